@@ -106,7 +106,7 @@ double LiveDecoder::image_offset(std::size_t camera, const RawFrame& raw) const 
   const auto& taken = raw.images[camera];
   const LiveCamera& of = cameras[camera];
   if (!taken) return 0;
-  return seconds(taken->stamp - raw.stamp) - of.usual_delay + of.added_delay;
+  return seconds(taken->stamp - raw.stamp) - of.usual_delay;
 }
 
 std::optional<double> LiveDecoder::image_exposure(std::size_t camera, const RawFrame& raw) {

@@ -29,11 +29,9 @@ struct LiveCamera {
   Camera camera;                            ///< with its usual delay
   std::optional<ImageRectifier> rectifier;  ///< absent: images need none
   double usual_delay = 0;                   ///< s from a scan's stamp to that of its image
-  /// s from the stamp of an image to its exposure, more than `camera` has.
-  double added_delay = 0;
 };
 
-/// What does not change after the beginning, but for the delays of the cameras.
+/// What does not change after the beginning.
 struct LiveDecoder {
   std::filesystem::path name;  ///< of the drive, for messages
   LiveLidar lidar;

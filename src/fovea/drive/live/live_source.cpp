@@ -23,9 +23,6 @@ std::unique_ptr<FrameSource> LiveSource::begin(const std::stop_token& stop) {
 std::optional<LiveFrame> LiveSource::next(const std::stop_token& stop) { return impl_->next(stop); }
 std::string LiveSource::missing() const { return impl_->missing(); }
 std::optional<Eigen::Vector3d> LiveSource::world_origin() const { return impl_->world_origin(); }
-void LiveSource::set_image_delay(std::size_t camera, double delay) {
-  impl_->set_image_delay(camera, delay);
-}
 void LiveSource::finish_recording() { impl_->finish_recording(); }
 LiveFigures LiveSource::figures() const { return impl_->figures(); }
 

@@ -121,11 +121,6 @@ class LiveSource {
   /// The next frame, from the first one on; waits for it. Nothing after close(), or if `stop` is
   /// requested. begin() comes first.
   std::optional<LiveFrame> next(const std::stop_token& stop);
-  /// From the next frame on, images of a camera count as taken `delay` after their stamps, in place
-  /// of the delay that drive.toml states.
-  /// @param camera  place in the calibration
-  /// @param delay   s
-  void set_image_delay(std::size_t camera, double delay);
   /// What begin() waits for: "images of camera front"; empty if it waits for nothing.
   std::string missing() const;
   /// Origin of `local` in the world of poses without coordinates; absent if there are none.

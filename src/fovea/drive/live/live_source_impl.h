@@ -40,7 +40,6 @@ class LiveSource::Impl {
   std::unique_ptr<FrameSource> begin(const std::stop_token& stop);
   std::optional<LiveFrame> next(const std::stop_token& stop);
 
-  void set_image_delay(std::size_t camera, double delay);
   std::string missing() const;
   std::optional<Eigen::Vector3d> world_origin() const;
   LiveFigures figures() const;

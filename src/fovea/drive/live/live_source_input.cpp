@@ -127,14 +127,6 @@ void LiveSource::Impl::close() {
   notify();
 }
 
-void LiveSource::Impl::set_image_delay(std::size_t camera, double delay) {
-  const std::lock_guard lock(guard_);
-  auto changed = std::make_shared<LiveDecoder>(*decoder_);
-  changed->cameras.at(camera).added_delay =
-      delay - description_.cameras[used_cameras_[camera]].delay;
-  decoder_ = std::move(changed);
-}
-
 FrameQueueLimits LiveSource::Impl::first_limits() const {
   FrameQueueLimits limits;
   limits.scans = std::max(options_.first_scans + kMoreScans, options_.max_scans);
