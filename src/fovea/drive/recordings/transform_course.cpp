@@ -52,6 +52,7 @@ void TransformCourse::add(std::size_t k, const TransformTree::TimedMotion& trans
     link.T_parent_child.insert_or_assign(earlier->time, earlier->T_a_b);
   }
   link.T_parent_child.insert_or_assign(transform.time, transform.T_a_b);
+  limit(k);
   moves_[k] = moves_[k] || link.moves();
 }
 
@@ -89,6 +90,18 @@ std::vector<RecordedPose> TransformCourse::known_poses() {
   }
   forget_past();
   return poses;
+}
+
+void TransformCourse::limit(std::size_t k) {
+  auto& times = steps_[k].link.T_parent_child;
+  times.erase(times.begin(), times.lower_bound(latest_of(steps_[k]) - kMaxAge));
+  while (times.size() > kMaxTransforms) times.erase(times.begin());
+}
+
+std::size_t TransformCourse::size() const {
+  std::size_t size = 0;
+  for (const TransformTree::Step& step : steps_) size += step.link.T_parent_child.size();
+  return size;
 }
 
 void TransformCourse::forget_past() {

@@ -21,9 +21,14 @@ class TransformCourse {
   /// @param tree  the transforms so far. In them, a frame moves between `world` and `body`.
   TransformCourse(const TransformTree& tree, const std::string& world, const std::string& body);
 
+  static constexpr TimeNs kMaxAge = 60 * kNsPerSecond;   ///< of a transform, to its next ones
+  static constexpr std::size_t kMaxTransforms = 10'000;  ///< of a frame in its parent
+
   /// @return the poses that are known now, each once. They are in order of time, unless stamps go
   ///         back.
   std::vector<RecordedPose> add(const std::vector<ros::Transform>& transforms);
+  /// Transforms in memory.
+  std::size_t size() const;
 
  private:
   using Links = std::vector<TransformTree::Step>;
@@ -35,6 +40,8 @@ class TransformCourse {
   bool is_known(TimeNs time) const;
   std::vector<RecordedPose> known_poses();
   void forget_past();
+  /// Bounds the transforms of a step, also while those nearest to the body do not come.
+  void limit(std::size_t k);
 
   Links steps_;              // from the body to the world
   std::size_t nearest_;      // the one to the body that moves

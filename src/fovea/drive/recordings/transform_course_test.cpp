@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace fovea::transform_course_test {
 
 constexpr TimeNs kStep = kNsPerSecond / 100;
@@ -144,6 +146,32 @@ TEST(TransformCourse, NoOldTransformOfAnotherFrameCountsAfterTheClockWentBack) {
       (some_motion(0.7) * some_motion(0.3)).matrix(), 1e-12));
   EXPECT_TRUE(poses[1].T_world_body.matrix().isApprox(
       (some_motion(0.8) * some_motion(0.4)).matrix(), 1e-12));
+}
+
+TEST(TransformCourse, MemoryIsBoundedWhileTheNearestFrameDoesNotCome) {
+  for (const TimeNs step : {kStep, kNsPerSecond / 100'000}) {
+    TransformTree tree;
+    for (int i = 1; i <= 2; ++i) {
+      add(tree, transform("map", "odom", kStart + i * step, i));
+      add(tree, transform("odom", "base_link", kStart + i * step, i));
+    }
+    TransformCourse course(tree, "map", "base_link");
+    course.add({});
+    std::vector<ros::Transform> odom;
+    for (int i = 3; i <= 20'000; ++i) {
+      odom.push_back(transform("map", "odom", kStart + i * step, 0.1));
+    }
+    course.add(odom);
+    const std::size_t most =
+        std::min(TransformCourse::kMaxTransforms, std::size_t(TransformCourse::kMaxAge / step) + 1);
+    EXPECT_EQ(course.size(), most + 1);
+    // The nearest frame continues.
+    const TimeNs time = kStart + 20'000 * step;
+    const auto poses = course.add({transform("odom", "base_link", time - step, 0.2),
+                                   transform("odom", "base_link", time, 0.2)});
+    EXPECT_EQ(poses.size(), 2u);
+    EXPECT_LE(course.size(), 2u);
+  }
 }
 
 }  // namespace fovea::transform_course_test
