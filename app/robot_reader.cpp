@@ -35,8 +35,8 @@ void RobotReader::rethrow() const {
 
 void RobotReader::read() {
   try {
-    figures_ = read_bridge(options_, topics_, ends_.get_token(),
-                           [this](bool is_connected) { check(is_connected); });
+    const auto idle = [this](bool is_connected) { check(is_connected); };
+    read_bridge(options_, topics_, ends_.get_token(), idle, figures_);
   } catch (...) {
     error_ = std::current_exception();
   }

@@ -41,10 +41,10 @@ class Publishing {
 class BridgeReader {
  public:
   BridgeReader(const BridgeOptions& options, BagSink& sink, const std::stop_token& stop,
-               const std::function<void(bool)>& idle)
-      : options_(options), sink_(sink), stop_(stop), idle_(idle) {}
+               const std::function<void(bool)>& idle, BridgeFigures& figures)
+      : options_(options), sink_(sink), stop_(stop), idle_(idle), figures_(figures) {}
 
-  BridgeFigures run() {
+  void run() {
     std::optional<Connection> connection(std::in_place, options_.address, options_.connection,
                                          stop_);
     while (connection) {
@@ -59,8 +59,21 @@ class BridgeReader {
       connection.reset();
       connect_again(connection);
     }
-    warn();
-    return std::move(figures_);
+  }
+
+  /// At the end: appends the warnings that count.
+  void warn() {
+    if (figures_.losses > 0) {
+      figures_.warn(fmt::format("the connection was lost {} time{}: {}", figures_.losses,
+                                figures_.losses == 1 ? "" : "s", first_loss_));
+    }
+    if (figures_.ended_lost) figures_.warn("the lost connection could not be made again");
+    if (figures_.damaged > 0) {
+      figures_.warn(fmt::format("{} messages of the bridge cannot be read (the first: {})",
+                                figures_.damaged, first_damage_));
+    }
+    if (options_.poses == nullptr) return;
+    for (std::string& warning : options_.poses->warnings()) figures_.warn(std::move(warning));
   }
 
  private:
@@ -167,25 +180,11 @@ class BridgeReader {
     static_cast<void>(connection.send({false, subscribe_message(subscriptions)}));
   }
 
-  void warn() {
-    if (figures_.losses > 0) {
-      figures_.warn(fmt::format("the connection was lost {} time{}: {}", figures_.losses,
-                                figures_.losses == 1 ? "" : "s", first_loss_));
-    }
-    if (figures_.ended_lost) figures_.warn("the lost connection could not be made again");
-    if (figures_.damaged > 0) {
-      figures_.warn(fmt::format("{} messages of the bridge cannot be read (the first: {})",
-                                figures_.damaged, first_damage_));
-    }
-    if (options_.poses == nullptr) return;
-    for (std::string& warning : options_.poses->warnings()) figures_.warn(std::move(warning));
-  }
-
   const BridgeOptions& options_;
   BagSink& sink_;
   const std::stop_token& stop_;
   const std::function<void(bool)>& idle_;
-  BridgeFigures figures_;
+  BridgeFigures& figures_;
   std::string first_loss_, first_damage_;
   std::map<std::uint32_t, BagTopic> offered_;       // requested topics, by channel
   std::map<std::uint32_t, Subscribed> subscribed_;  // by subscription
@@ -197,9 +196,17 @@ class BridgeReader {
 
 }  // namespace
 
-BridgeFigures read_bridge(const BridgeOptions& options, BagSink& sink, const std::stop_token& stop,
-                          const std::function<void(bool)>& idle) {
-  return BridgeReader(options, sink, stop, idle).run();
+void read_bridge(const BridgeOptions& options, BagSink& sink, const std::stop_token& stop,
+                 const std::function<void(bool)>& idle, BridgeFigures& figures) {
+  figures = BridgeFigures();
+  BridgeReader reader(options, sink, stop, idle, figures);
+  try {
+    reader.run();
+  } catch (...) {
+    reader.warn();
+    throw;
+  }
+  reader.warn();
 }
 
 }  // namespace fovea::bridge

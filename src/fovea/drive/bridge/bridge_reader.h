@@ -34,10 +34,11 @@ struct BridgeFigures : Messages {
 /// connection, `stop` is requested, or the connection is lost and cannot be made again.
 /// is_requested() is called again for a topic that comes back. Of two channels of one topic one is
 /// read at a time. Topics of Fovea's own poses are not read.
-/// @param idle  called about once a second, and after each message
+/// @param idle     called about once a second, and after each message
+/// @param figures  gets what was read, also if it throws
 /// @throws ConnectionError  if there is no connection to begin with
 /// @throws InputError       if a message is too long
-BridgeFigures read_bridge(const BridgeOptions& options, BagSink& sink, const std::stop_token& stop,
-                          const std::function<void(bool is_connected)>& idle);
+void read_bridge(const BridgeOptions& options, BagSink& sink, const std::stop_token& stop,
+                 const std::function<void(bool is_connected)>& idle, BridgeFigures& figures);
 
 }  // namespace fovea::bridge

@@ -64,7 +64,9 @@ BridgeFigures read(const TestBridge& server, Sink& sink,
   BridgeOptions options;
   options.address = server.address();
   options.reconnect = reconnect;
-  return read_bridge(options, sink, {}, [](bool) {});
+  BridgeFigures figures;
+  read_bridge(options, sink, {}, [](bool) {}, figures);
+  return figures;
 }
 
 TEST(BridgeReader, PassesTheRequestedTopicsOn) {
@@ -193,6 +195,9 @@ TEST(BridgeReader, GivesUpAConnectionThatStaysLost) {
 
 TEST(BridgeReader, AMessageTooLongEndsTheReading) {
   const TestBridge server(kProtocol, [&](TestBridge::WebSocket& stream) {
+    TestBridge::send_text(stream, "{");
+    advertise(stream, "/imu", 5);
+    send_data(stream, subscription(stream, 5), "one");
     TestBridge::send_binary(stream, std::string(2 << 20, ' '));
     TestBridge::wait_for_end(stream);
   });
@@ -200,7 +205,10 @@ TEST(BridgeReader, AMessageTooLongEndsTheReading) {
   options.address = server.address();
   options.connection.max_message = 1 << 20;
   Sink sink;
-  EXPECT_THROW(read_bridge(options, sink, {}, [](bool) {}), InputError);
+  BridgeFigures figures;
+  EXPECT_THROW(read_bridge(options, sink, {}, [](bool) {}, figures), InputError);
+  EXPECT_EQ(figures.messages, 1u);
+  EXPECT_THAT(figures.warnings, ElementsAre(HasSubstr("1 messages of the bridge cannot be read")));
 }
 
 TEST(BridgeReader, AStopEndsTheWait) {
@@ -209,8 +217,8 @@ TEST(BridgeReader, AStopEndsTheWait) {
   options.address = server.address();
   std::stop_source stop;
   Sink sink;
-  const BridgeFigures figures =
-      read_bridge(options, sink, stop.get_token(), [&](bool) { stop.request_stop(); });
+  BridgeFigures figures;
+  read_bridge(options, sink, stop.get_token(), [&](bool) { stop.request_stop(); }, figures);
   EXPECT_EQ(figures.losses, 0u);
   EXPECT_FALSE(figures.ended_lost);
 }

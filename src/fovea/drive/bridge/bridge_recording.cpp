@@ -101,10 +101,12 @@ BridgeFigures record_bridge(const RecordingJob& job, const std::stop_token& stop
   RecordingSink sink(job);
   std::stop_source ends;
   const std::stop_callback end_with_user(stop, [&] { ends.request_stop(); });
-  BridgeFigures figures = read_bridge(job.bridge, sink, ends.get_token(), [&](bool is_connected) {
+  BridgeFigures figures;
+  const auto idle = [&](bool is_connected) {
     progress(sink.check(is_connected));
     if (sink.is_over()) ends.request_stop();
-  });
+  };
+  read_bridge(job.bridge, sink, ends.get_token(), idle, figures);
   sink.finish();
   return figures;
 }
@@ -123,9 +125,11 @@ std::vector<BagTopic> list_topics(const BridgeOptions& options, std::chrono::mil
   Topics topics;
   std::stop_source ends;
   const auto until = Clock::now() + wait;
-  read_bridge(options, topics, ends.get_token(), [&](bool /*is_connected*/) {
+  const auto idle = [&](bool /*is_connected*/) {
     if (Clock::now() >= until) ends.request_stop();
-  });
+  };
+  BridgeFigures unused;
+  read_bridge(options, topics, ends.get_token(), idle, unused);
   std::vector<BagTopic> list;
   list.reserve(topics.by_name.size());
   for (auto& [name, topic] : topics.by_name) list.push_back(std::move(topic));

@@ -40,7 +40,9 @@ BridgeFigures read(const TestBridge& server, PosePublisher& poses, NoTopics& sin
   BridgeOptions options;
   options.address = server.address();
   options.poses = &poses;
-  return read_bridge(options, sink, stop, [](bool) {});
+  BridgeFigures figures;
+  read_bridge(options, sink, stop, [](bool) {}, figures);
+  return figures;
 }
 BridgeFigures read(const TestBridge& server, PosePublisher& poses) {
   NoTopics sink;
