@@ -166,9 +166,8 @@ bool LiveSource::Impl::wait_for_room(std::unique_lock<std::mutex>& lock, HasRoom
       if (options_.has_one_sender && !std::exchange(is_stuck_, true)) notify();
       changed_.wait(lock);
       end = deadline();
-    } else if (options_.has_one_sender) {
-      break;
-    } else if (changed_.wait_until(lock, end) == std::cv_status::timeout) {
+    } else if (options_.has_one_sender ||
+               changed_.wait_until(lock, end) == std::cv_status::timeout) {
       break;
     }
   }
