@@ -19,7 +19,9 @@ RobotReader::~RobotReader() {
 
 LiveSource* RobotReader::wait_for_source() {
   LiveSource* source = nullptr;
-  while (source == nullptr && !topics_.is_closed()) {
+  bool is_closed = false;
+  while (source == nullptr && !is_closed) {
+    is_closed = topics_.is_closed();  // before the wait: a short drive begins as it is closed
     source = topics_.wait_for_source(std::chrono::seconds(1));
   }
   return source;
