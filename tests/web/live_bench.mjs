@@ -50,7 +50,7 @@ function quarters(samples) {
 async function mapLive(messages) {
   const server = await BridgeServer.start(messages);
   const child = spawn(program, ['map', server.url, '-o', join(work, 'live.fovea'), '--report', join(work, 'live.json'),
-    '--quiet'], { stdio: ['ignore', 'inherit', 'inherit'] });
+    '--hold-out', '8:4', '--quiet'], { stdio: ['ignore', 'inherit', 'inherit'] });
   const ended = once(child, 'close');
   await server.subscribedToAll();
   const memory = [];
@@ -61,11 +61,16 @@ async function mapLive(messages) {
   return quarters(memory);
 }
 
+/// Scores of the held-out frames, and against the truth if the drive has it.
 function evaluate(name) {
-  if (!existsSync(join(folder, 'truth'))) return {};
-  execFileSync(program, ['evaluate', join(work, `${name}.fovea`), folder, '--truth', folder, '--quiet',
-    '--report', join(work, `${name}_scores.json`)], { stdio: ['ignore', 'ignore', 'inherit'] });
-  return { scores: reportOf(`${name}_scores.json`) };
+  const protocols = existsSync(join(folder, 'truth')) ? ['held-out', 'truth'] : ['held-out'];
+  return Object.fromEntries(protocols.map((protocol) => {
+    const report = `${name}_${protocol}.json`;
+    execFileSync(program, ['evaluate', join(work, `${name}.fovea`), folder, '--protocol', protocol, '--foreign',
+      '--json', join(work, report)], { stdio: ['ignore', 'ignore', 'inherit'] });
+    const { frames, warnings, ...scores } = reportOf(report);
+    return [protocol, scores];
+  }));
 }
 
 function figuresOf(name) {
@@ -79,9 +84,10 @@ try {
   const messages = record(readDrive(folder), { images: 'rgb8', poses: existsSync(join(folder, 'poses.csv'))
     ? 'odometry' : 'gnss' });
   const memory_mb = await mapLive(messages);
-  execFileSync(program, ['map', folder, '-o', join(work, 'file.fovea'), '--rate', String(rate), '--quiet',
+  execFileSync(program, ['map', folder, '-o', join(work, 'file.fovea'), '--rate', String(rate), '--hold-out', '8:4', '--quiet',
     '--report', join(work, 'file.json')], { stdio: ['ignore', 'inherit', 'inherit'] });
   console.log(JSON.stringify({ rate_hz: rate, live: { memory_mb, ...figuresOf('live') }, file: figuresOf('file') }, null, 2));
 } finally {
-  rmSync(work, { recursive: true, force: true });
+  if (process.env.FOVEA_KEEP) console.error(work);
+  else rmSync(work, { recursive: true, force: true });
 }

@@ -25,6 +25,12 @@ namespace {
 /// Frames from one check of dropped points to the next: does not depend on timing.
 constexpr std::size_t kPointsCheckedEvery = 30;
 
+/// ms from the arrival of a scan: older frames of a live drive add nothing to the map, so that
+/// tracking catches up.
+constexpr double kLongestAge = 250;
+/// ms from the beginning of a live run, which has to map the first frames meanwhile.
+constexpr double kCatchUp = 2000;
+
 }  // namespace
 
 void require_no_stop(const MapJob& job) {
@@ -196,20 +202,29 @@ std::vector<int> MapRun::remaining_frames() const {
 
 void MapRun::map_frames(FrameStream& stream,
                         const std::function<void(const MapProgress&)>& progress) {
+  began_ = WallClock::now();
   FramePipeline frames({.read = [&](const std::stop_token& stop) { return stream.next(stop); },
                         .track = [&](const Frame& frame) { return track(frame); },
                         .apply_deferred = [&] { mapper_->apply_deferred_tracking(); }},
                        threaded_, job_.stop);
-  const bool may_skip = is_live_ && !job_.texture_every_frame && !job_.settings.is_paper();
   try {
     while (std::optional<TrackedFrame> frame = frames.next()) {
-      if (may_skip && frame->tracked) frame->tracked->task.skips_texture = frames.has_next();
+      if (frame->tracked) frame->tracked->task.skips_texture = is_short_of_time(*frame, frames);
       map_next(*frame, progress);
       checkpoint_if_due();
     }
   } catch (const DriveLostError& error) {
     lost_ = error;
   }
+}
+
+bool MapRun::is_short_of_time(const TrackedFrame& frame, const FramePipeline& frames) const {
+  const bool may_skip = is_live_ && !job_.texture_every_frame && !job_.settings.is_paper();
+  // The first frames come all at once.
+  const bool is_first = frame.tracked->result.index < drive_.end;
+  if (!may_skip || is_first) return false;
+  const bool catches_up = milliseconds_since(began_) < kCatchUp;
+  return frames.has_next() || (!catches_up && milliseconds_since(frame.arrival()) > kLongestAge);
 }
 
 TrackedScan MapRun::track(const Frame& frame) {

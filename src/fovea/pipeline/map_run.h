@@ -67,6 +67,8 @@ class MapRun {
   void resume_from_file();
   std::unique_ptr<IncrementalMapper> mapper_of_drive();
   TrackedScan track(const Frame& frame);  // runs in the tracker's thread
+  /// Whether a frame is to add nothing to the map (FrameTask::skips_texture).
+  bool is_short_of_time(const TrackedFrame& frame, const FramePipeline& frames) const;
   void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
   void account_for(const FrameRecord& record, bool is_new);
   void checkpoint_if_due();
@@ -93,6 +95,7 @@ class MapRun {
   std::vector<std::optional<TimeNs>> live_stamps_;  // of all frames
   LiveState live_state_;
   std::unique_ptr<LiveClocks> clocks_;
+  WallClock::time_point began_;
   bool threaded_;
   Checkpointer file_;
   TileCache cache_;
