@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/recalibrated_source.h"
-#include "fovea/map/drive_fingerprint.h"
 #include "fovea/map/meta_keys.h"
-#include "fovea/mapping/registration/local_map.h"
 #include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/initial_motion.h"
@@ -24,12 +21,6 @@ namespace {
 
 /// Frames from one check of dropped points to the next: does not depend on timing.
 constexpr std::size_t kPointsCheckedEvery = 30;
-
-/// ms from the arrival of a scan: older frames of a live drive add nothing to the map, so that
-/// tracking catches up.
-constexpr double kLongestAge = 250;
-/// ms from the beginning of a live run, which has to map the first frames meanwhile.
-constexpr double kCatchUp = 2000;
 
 }  // namespace
 
@@ -129,47 +120,12 @@ void MapRun::resume_from_file() {
   if (log_.has_mapped()) views_.skip();
 }
 
-void MapRun::resume_live(const MapReader& reader, const std::vector<FrameRecord>& records) {
-  const std::optional<TimeNs> first = source_.stamp(drive_.begin);
-  const auto last = std::find_if(records.rbegin(), records.rend(), [](const FrameRecord& record) {
-    return record.stamp.has_value();
-  });
-  if (first && last != records.rend() && *first <= *last->stamp) {
-    throw InputError(fmt::format("the first scan is {:.1f} s before the last one of the map",
-                                 seconds(*last->stamp - *first)),
-                     job_.output.string(), "set the clock of the robot, or start a new map");
-  }
-  const LiveState earlier = live_state(reader).value_or(LiveState());
-  live_state_.targets = earlier.targets;
-  const EarlierScans scans(reader, earlier);
-  mapper_->resume_live(stored_map(reader, job_.settings.tile_size()), records,
-                       [&](int frame) { return scans.find(frame); });
-}
-
-void MapRun::keep_target(TrackedScan& tracked) {
-  // As many as the local map depends on.
-  const auto kept = std::size_t(LocalMap::memory(LocalMapOptions{}));
-  if (tracked.target_lidar.empty()) return;
-  live_state_.targets.push_back({tracked.result.index, std::move(tracked.target_lidar)});
-  if (live_state_.targets.size() > kept) live_state_.targets.pop_front();
-}
-
 void MapRun::check_calibration(const TrackedFrame& tracked, FrameRecord& record) {
   if (!check_ || record.status != FrameStatus::kMapped) return;
   const Frame& frame = std::get<Frame>(tracked.read.result);
   if (!check_->is_due(frame.index)) return;
   const WallClock::time_point start = WallClock::now();
   if (const auto motion = mapped_motion(record, latest_)) check_->add_edges(frame, *motion);
-  record.milliseconds["calibration"] = milliseconds_since(start);
-}
-
-void MapRun::check_clocks(const TrackedFrame& tracked, FrameRecord& record) {
-  const auto* frame = std::get_if<Frame>(&tracked.read.result);
-  if (!clocks_ || frame == nullptr) return;
-  const WallClock::time_point start = WallClock::now();
-  std::optional<FrameMotion> motion;
-  if (record.status == FrameStatus::kMapped) motion = mapped_motion(record, latest_);
-  clocks_->add(*frame, record, motion);
   record.milliseconds["calibration"] = milliseconds_since(start);
 }
 
@@ -185,13 +141,6 @@ MapRows MapRun::fresh_rows(bool last) {
   rows.meta[meta_key::kFramesEnd] = fmt::to_string(end);
   rows.states.emplace_back(kLiveState, checkpoint_of(live_state_, end - 1));
   return rows;
-}
-
-DriveRecord MapRun::live_record() const {
-  DriveRecord record = drive_records_.front();
-  record.end_frame = record.first_frame + int(live_stamps_.size());
-  record.stamps_fingerprint = stamps_fingerprint(record.first_frame, live_stamps_);
-  return record;
 }
 
 std::vector<int> MapRun::remaining_frames() const {
@@ -216,15 +165,6 @@ void MapRun::map_frames(FrameStream& stream,
   } catch (const DriveLostError& error) {
     lost_ = error;
   }
-}
-
-bool MapRun::is_short_of_time(const TrackedFrame& frame, const FramePipeline& frames) const {
-  const bool may_skip = is_live_ && !job_.texture_every_frame && !job_.settings.is_paper();
-  // The first frames come all at once.
-  const bool is_first = frame.tracked->result.index < drive_.end;
-  if (!may_skip || is_first) return false;
-  const bool catches_up = milliseconds_since(began_) < kCatchUp;
-  return frames.has_next() || (!catches_up && milliseconds_since(frame.arrival()) > kLongestAge);
 }
 
 TrackedScan MapRun::track(const Frame& frame) {

@@ -1,0 +1,75 @@
+// What a run of a live drive does otherwise than that of a drive from files.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "fovea/core/errors.h"
+#include "fovea/map/drive_fingerprint.h"
+#include "fovea/mapping/registration/local_map.h"
+#include "fovea/pipeline/earlier_run.h"
+#include "fovea/pipeline/map_run.h"
+
+namespace fovea {
+namespace {
+
+/// ms from the arrival of a scan: older frames of a live drive add nothing to the map, so that
+/// tracking catches up.
+constexpr double kLongestAge = 250;
+/// ms from the beginning of a live run, which has to map the first frames meanwhile.
+constexpr double kCatchUp = 2000;
+
+}  // namespace
+
+void MapRun::resume_live(const MapReader& reader, const std::vector<FrameRecord>& records) {
+  const std::optional<TimeNs> first = source_.stamp(drive_.begin);
+  const auto last = std::find_if(records.rbegin(), records.rend(), [](const FrameRecord& record) {
+    return record.stamp.has_value();
+  });
+  if (first && last != records.rend() && *first <= *last->stamp) {
+    throw InputError(fmt::format("the first scan is {:.1f} s before the last one of the map",
+                                 seconds(*last->stamp - *first)),
+                     job_.output.string(), "set the clock of the robot, or start a new map");
+  }
+  const LiveState earlier = live_state(reader).value_or(LiveState());
+  live_state_.targets = earlier.targets;
+  const EarlierScans scans(reader, earlier);
+  mapper_->resume_live(stored_map(reader, job_.settings.tile_size()), records,
+                       [&](int frame) { return scans.find(frame); });
+}
+
+void MapRun::keep_target(TrackedScan& tracked) {
+  // As many as the local map depends on.
+  const auto kept = std::size_t(LocalMap::memory(LocalMapOptions{}));
+  if (tracked.target_lidar.empty()) return;
+  live_state_.targets.push_back({tracked.result.index, std::move(tracked.target_lidar)});
+  if (live_state_.targets.size() > kept) live_state_.targets.pop_front();
+}
+
+void MapRun::check_clocks(const TrackedFrame& tracked, FrameRecord& record) {
+  const auto* frame = std::get_if<Frame>(&tracked.read.result);
+  if (!clocks_ || frame == nullptr) return;
+  const WallClock::time_point start = WallClock::now();
+  std::optional<FrameMotion> motion;
+  if (record.status == FrameStatus::kMapped) motion = mapped_motion(record, latest_);
+  clocks_->add(*frame, record, motion);
+  record.milliseconds["calibration"] = milliseconds_since(start);
+}
+
+DriveRecord MapRun::live_record() const {
+  DriveRecord record = drive_records_.front();
+  record.end_frame = record.first_frame + int(live_stamps_.size());
+  record.stamps_fingerprint = stamps_fingerprint(record.first_frame, live_stamps_);
+  return record;
+}
+
+bool MapRun::is_short_of_time(const TrackedFrame& frame, const FramePipeline& frames) const {
+  const bool may_skip = is_live_ && !job_.texture_every_frame && !job_.settings.is_paper();
+  // The first frames come all at once.
+  const bool is_first = frame.tracked->result.index < drive_.end;
+  if (!may_skip || is_first) return false;
+  const bool catches_up = milliseconds_since(began_) < kCatchUp;
+  return frames.has_next() || (!catches_up && milliseconds_since(frame.arrival()) > kLongestAge);
+}
+
+}  // namespace fovea
