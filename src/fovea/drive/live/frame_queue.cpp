@@ -70,8 +70,12 @@ bool FrameQueue::has_room_for_further_scan(std::size_t lidar) const {
 
 bool FrameQueue::has_room_for_image(std::size_t camera) const {
   const MatchQueue<LiveImage>& queue = images_[camera];
-  const bool is_ahead = queue.stamps().last() && scan_stamps_.last() &&
-                        *queue.stamps().last() - *scan_stamps_.last() > limits_.images;
+  const std::optional<TimeNs> last = queue.stamps().last(), scan = scan_stamps_.last();
+  bool is_ahead = last && scan && *last - *scan > limits_.images;
+  // Before the first scan, the first images wait for it.
+  if (last && !scan && !queue.items().empty()) {
+    is_ahead = *last - queue.items().front()->stamp > limits_.images / 2;
+  }
   return !is_ahead && queue.items().size() < limits_.image_count &&
          queue.bytes() < limits_.image_bytes;
 }

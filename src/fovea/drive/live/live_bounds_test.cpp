@@ -33,6 +33,13 @@ class LiveBounds : public testing::Test {
     return options;
   }
 
+  /// No wait depends on the clock.
+  static LiveOptions one_sender() {
+    LiveOptions options = all_data();
+    options.has_one_sender = true;
+    return options;
+  }
+
   /// Sends the scans [begin, end) from this thread, with all that belongs to them.
   static void send(const LiveData& data, LiveSource& source, int begin, int end) {
     LiveData part = data;
@@ -147,7 +154,7 @@ TEST_F(LiveBounds, CountsGaps) {
   std::erase_if(data_.images, [](const LiveImage& image) {
     return image.camera == "front" && image.stamp / kLiveStep == kLiveStart / kLiveStep + 25;
   });
-  const PlayedDrive run = play(data_, toml_, short_waits());
+  const PlayedDrive run = play(data_, toml_, one_sender());
   EXPECT_EQ(run.figures.scans_missing, 2u);
   EXPECT_EQ(run.figures.images_missing, 1u);
   EXPECT_EQ(run.figures.images_unused, 4u);  // of the missing scans
@@ -179,7 +186,7 @@ TEST_F(LiveBounds, DamagedDataCostOneFrameAtMost) {
   data.scans[17].points.intensity.clear();
   data.scans[18].points.intensity.resize(3);
   data.scans[20].points.position.assign(90, Eigen::Vector3f::Constant(NAN));
-  const PlayedDrive run = play(data, toml_, short_waits());
+  const PlayedDrive run = play(data, toml_, one_sender());
   ASSERT_EQ(run.frames.size(), 40u);
   EXPECT_EQ(frame_of(run.frames[15]).missing_images.size(), 1u);
   for (const std::size_t i : {17u, 18u, 20u}) {
@@ -232,19 +239,6 @@ TEST_F(LiveBounds, AStopEndsEachWait) {
   EXPECT_FALSE(source.next(later.get_token()));
 }
 
-TEST_F(LiveBounds, DestructionEndsAWaitForRoom) {
-  std::optional<LiveSource> source(std::in_place, toml_, all_data());
-  std::atomic<int> sent = 0;
-  const std::jthread sensors([&] {
-    for (const LiveScan& scan : data_.scans) {
-      source->add_scan(scan);
-      if (++sent == 15) return;  // after the one that waited
-    }
-  });
-  while (sent < 14) std::this_thread::yield();
-  source.reset();
-}
-
 TEST_F(LiveBounds, AClockThatJumpsBackIsShifted) {
   constexpr TimeNs kJump = -3600 * kNsPerSecond;
   const auto shift = [](auto& stamp) {
@@ -256,7 +250,7 @@ TEST_F(LiveBounds, AClockThatJumpsBackIsShifted) {
   for (RecordedPose& pose : data.poses) shift(pose.time);
   for (RecordedInertia& inertia : data.inertia) shift(inertia.time);
   for (WheelSpeed& wheel : data.wheels) shift(wheel.time);
-  LiveSource source(toml_, short_waits());
+  LiveSource source(toml_, one_sender());
   const std::jthread sensors([&] {
     // In the order in which they were measured.
     std::vector<std::pair<TimeNs, std::function<void(LiveSource&)>>> calls = data.calls();

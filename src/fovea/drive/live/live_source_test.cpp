@@ -176,7 +176,9 @@ TEST_F(LiveSourceTest, ACameraOfAnotherClockIsLeftOut) {
   for (LiveImage& image : data.images) {
     if (image.camera == "side") image.stamp -= 1000 * kNsPerSecond;
   }
-  const PlayedDrive run = play(data, toml, all_data());
+  LiveOptions options = all_data();
+  options.has_one_sender = true;
+  const PlayedDrive run = play(data, toml, options);
   EXPECT_EQ(run.info.calibration.cameras.size(), 1u);
   EXPECT_THAT(run.info.warnings, testing::Contains(HasSubstr("no image of camera side belongs")));
   EXPECT_EQ(run.frames.size(), 30u);
