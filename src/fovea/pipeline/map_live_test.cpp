@@ -16,6 +16,7 @@
 #include "fovea/pipeline/mapper_test_support.h"
 
 namespace fovea::map_live_test {
+namespace {
 
 constexpr int kFrames = 24;
 
@@ -52,6 +53,8 @@ LiveOptions all_data() {
   return options;
 }
 
+}  // namespace
+
 class MapLive : public testing::Test {
  protected:
   MapJob job(const std::string& name) const {
@@ -77,6 +80,8 @@ class MapLive : public testing::Test {
   TemporaryFolder folder_;
 };
 
+namespace {
+
 struct PointsOfMap {
   std::vector<std::pair<TileId, std::size_t>> tiles;
   std::vector<Eigen::Vector3f> position;
@@ -95,6 +100,8 @@ PointsOfMap points_in(const MapReader& map) {
   });
   return points;
 }
+
+}  // namespace
 
 TEST_F(MapLive, TheMapIsThatOfTheDrive) {
   const test::LiveData data = town_data(0, kFrames);
