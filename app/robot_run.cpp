@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fovea/core/errors.h"
+#include "fovea/pipeline/summary_json.h"
 
 namespace fovea::app {
 
@@ -54,21 +55,13 @@ void throw_missing(RobotReader& reader, const std::string& address) {
 ordered_json live_json(const RobotReader& reader, const LiveTopics& topics,
                        const LiveFigures& figures, const bridge::PosePublisher& poses) {
   const bridge::BridgeFigures& of_bridge = reader.figures();
-  return {{"messages", of_bridge.messages},
-          {"messages_damaged", of_bridge.damaged},
-          {"messages_unusable", topics.unusable_counts()},
-          {"connection_losses", of_bridge.losses},
-          {"scans", figures.scans},
-          {"scans_dropped", figures.scans_dropped},
-          {"scans_out_of_order", figures.scans_out_of_order},
-          {"scans_missing", figures.scans_missing},
-          {"images", figures.images},
-          {"images_late", figures.images_late},
-          {"images_missing", figures.images_missing},
-          {"images_unused", figures.images_unused},
-          {"poses", figures.poses},
-          {"poses_late", figures.poses_late},
-          {"poses_published", poses.sent()}};
+  ordered_json json = {{"messages", of_bridge.messages},
+                       {"messages_damaged", of_bridge.damaged},
+                       {"messages_unusable", topics.unusable_counts()},
+                       {"connection_losses", of_bridge.losses}};
+  json.update(to_json(figures));
+  json["poses_published"] = poses.sent();
+  return json;
 }
 
 }  // namespace fovea::app

@@ -43,22 +43,9 @@ std::string text_of(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-ordered_json figures_json(const LiveFigures& figures) {
-  return {{"scans", figures.scans},
-          {"scans_dropped", figures.scans_dropped},
-          {"scans_out_of_order", figures.scans_out_of_order},
-          {"scans_missing", figures.scans_missing},
-          {"images", figures.images},
-          {"images_late", figures.images_late},
-          {"images_missing", figures.images_missing},
-          {"images_unused", figures.images_unused},
-          {"poses", figures.poses},
-          {"poses_late", figures.poses_late}};
-}
-
 }  // namespace
 
-std::string live_figures_json(const LiveFigures& figures) { return text_of(figures_json(figures)); }
+std::string live_figures_json(const LiveFigures& figures) { return text_of(to_json(figures)); }
 
 LiveRun::LiveRun(LiveRunOptions options)
     : source_(options.drive_toml, options.source),
@@ -164,7 +151,7 @@ void LiveRun::map() {
   const LiveFigures figures = source_.figures();
   summary.append(figures);
   ordered_json json = to_json(summary);
-  json["live"] = figures_json(figures);
+  json["live"] = to_json(figures);
   const std::lock_guard lock(guard_);
   summary_ = text_of(json);
 }

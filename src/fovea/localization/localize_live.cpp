@@ -4,37 +4,10 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/localization/localize_drive.h"
+#include "fovea/pipeline/live_stream.h"
 
 namespace fovea {
 namespace {
-
-class LiveStream : public FrameStream {
- public:
-  explicit LiveStream(LiveSource& source) : source_(source) {}
-
-  std::optional<ReadFrame> next(const std::stop_token& stop) override {
-    std::optional<LiveFrame> frame = source_.next(stop);
-    if (!frame) return std::nullopt;
-    return ReadFrame{std::move(frame->frame), frame->decode_ms, frame->arrival};
-  }
-
- private:
-  LiveSource& source_;
-};
-
-/// Closes a source at a stop and at the end: no thread waits to add data that nothing reads.
-class ClosedAtEnd {
- public:
-  ClosedAtEnd(LiveSource& source, const std::stop_token& stop)
-      : source_(source), at_stop_(stop, [this] { source_.close(); }) {}
-  ~ClosedAtEnd() { source_.close(); }
-  ClosedAtEnd(const ClosedAtEnd&) = delete;
-  ClosedAtEnd& operator=(const ClosedAtEnd&) = delete;
-
- private:
-  LiveSource& source_;
-  std::stop_callback<std::function<void()>> at_stop_;
-};
 
 LocalizationGuess find_guess(const DriveInfo& drive, const LiveLocalizationJob& job) {
   LocalizationGuess guess;

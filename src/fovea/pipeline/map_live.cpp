@@ -5,45 +5,12 @@
 #include "fovea/core/errors.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_sensors.h"
+#include "fovea/pipeline/live_stream.h"
 #include "fovea/pipeline/map_run.h"
 #include "fovea/pipeline/run_meta.h"
 #include "fovea/pipeline/run_preparation.h"
 
 namespace fovea {
-namespace {
-
-class LiveStream : public FrameStream {
- public:
-  /// @param clocks  or null
-  LiveStream(LiveSource& source, LiveClocks* clocks) : source_(source), clocks_(clocks) {}
-
-  std::optional<ReadFrame> next(const std::stop_token& stop) override {
-    std::optional<LiveFrame> frame = source_.next(stop);
-    if (!frame) return std::nullopt;
-    auto* const usable = std::get_if<Frame>(&frame->frame);
-    if (clocks_ != nullptr && usable != nullptr) clocks_->correct(*usable);
-    return ReadFrame{std::move(frame->frame), frame->decode_ms, frame->arrival};
-  }
-
- private:
-  LiveSource& source_;
-  LiveClocks* clocks_;
-};
-
-/// Closes a source: no thread waits to add data that nothing reads.
-class ClosedAtEnd {
- public:
-  explicit ClosedAtEnd(LiveSource& source) : source_(source) {}
-  ~ClosedAtEnd() { source_.close(); }
-  ClosedAtEnd(const ClosedAtEnd&) = delete;
-  ClosedAtEnd& operator=(const ClosedAtEnd&) = delete;
-
- private:
-  LiveSource& source_;
-};
-
-}  // namespace
-
 MapSummary map_live(LiveSource& source, const MapJob& job,
                     const std::function<void(const MapProgress&)>& progress) {
   const ClosedAtEnd closed(source);

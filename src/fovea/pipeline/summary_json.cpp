@@ -10,6 +10,19 @@ nlohmann::ordered_json to_json(const StageLatency& latency) {
   return {{"p50", latency.p50}, {"p95", latency.p95}, {"max", latency.max}};
 }
 
+nlohmann::ordered_json to_json(const LiveFigures& figures) {
+  return {{"scans", figures.scans},
+          {"scans_dropped", figures.scans_dropped},
+          {"scans_out_of_order", figures.scans_out_of_order},
+          {"scans_missing", figures.scans_missing},
+          {"images", figures.images},
+          {"images_late", figures.images_late},
+          {"images_missing", figures.images_missing},
+          {"images_unused", figures.images_unused},
+          {"poses", figures.poses},
+          {"poses_late", figures.poses_late}};
+}
+
 nlohmann::ordered_json to_json(const MapSummary& summary) {
   nlohmann::ordered_json latency;
   for (const char* stage : {"decode", "upsample", "register", "fovea", "filter", "texture", "store",
