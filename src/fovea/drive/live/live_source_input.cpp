@@ -15,8 +15,8 @@ namespace {
 /// Scans that the beginning keeps beyond the first ones, until it has their images.
 constexpr std::size_t kMoreScans = 4;
 
-/// s between records of navigation that a frame waits for: a frame in a hurry takes the motion up
-/// to the last one of slower sensors.
+/// s between the records of navigation that a frame waits for. Of a slower sensor, a frame takes
+/// the motion up to the last record, unless the sender waits.
 constexpr double kLongestStep = 0.03, kAnyStep = 60;
 
 std::vector<std::string> names_of(const LiveSensors& sensors) {

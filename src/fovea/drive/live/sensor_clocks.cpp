@@ -14,7 +14,7 @@ namespace {
 
 constexpr TimeNs kJump = kNsPerSecond / 2;
 constexpr TimeNs kLatest = TimeNs(1) << 62;  // year 2116
-// A sensor that deviates from the LiDAR in so many messages, and for so long, has jumped alone.
+// A sensor has jumped alone if it deviates from the LiDAR in kMessages and for kDeviates.
 constexpr int kMessages = 5;
 constexpr TimeNs kDeviates = kNsPerSecond;
 constexpr TimeNs kLongestLoss = 10 * kNsPerSecond;

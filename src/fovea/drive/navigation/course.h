@@ -11,8 +11,8 @@
 namespace fovea {
 
 /// Heading at each place (rad, 0 = along x, counter-clockwise): the direction of the way through
-/// it, between the nearest places before and after that are a metre apart; where the vehicle stands
-/// (no metre within two seconds), that of before, or else of afterwards. Empty if it never moves,
+/// it, between the nearest places before and after that are a meter apart; where the vehicle stands
+/// (no meter within two seconds), that of before, or else of afterwards. Empty if it never moves,
 /// and no heading is given.
 /// @param times      strictly increasing, one a place
 /// @param positions  m; z does not matter
