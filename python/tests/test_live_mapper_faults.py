@@ -1,5 +1,6 @@
 """fovea.LiveMapper: wrong data, errors of the mapping thread, and ends of all kinds."""
 import gc
+import itertools
 import signal
 import subprocess
 import sys
@@ -141,9 +142,12 @@ class Ends(unittest.TestCase):
             mapper.close()
 
     def test_ctrl_c_ends_the_map(self):
-        # The map begins when close() says that no more scans come.
-        mapper = live_sample.mapper("interrupted.fovea",
-                                    on_pose=lambda _: signal.raise_signal(signal.SIGINT))
+        # The map begins when close() says that no more scans come. A second signal could arrive after
+        # close() has returned.
+        poses = itertools.count()
+        mapper = live_sample.mapper(
+            "interrupted.fovea",
+            on_pose=lambda _: signal.raise_signal(signal.SIGINT) if next(poses) == 0 else None)
         live_sample.feed(mapper, 0, 4)
         with self.assertRaises(KeyboardInterrupt):
             mapper.close()
