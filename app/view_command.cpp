@@ -33,7 +33,7 @@ struct ViewArguments {
   bool no_browser = false, quiet = false, foreign = false;
 };
 
-std::shared_ptr<const DriveImages> open_images(const MapReader& map,
+std::shared_ptr<const FrameImages> open_images(const MapReader& map,
                                                const ViewArguments& arguments) {
   if (arguments.drive.drive.empty()) return nullptr;
   const MapMeta meta = map.meta();
@@ -64,7 +64,7 @@ MakeContent city_content(const ViewArguments& arguments) {
 }
 
 void run(const ViewArguments& arguments, Session& session) {
-  std::shared_ptr<const DriveImages> images;
+  std::shared_ptr<const FrameImages> images;
   MakeContent content;
   const bool is_of_city = is_city(arguments.map);
   if (is_of_city) {

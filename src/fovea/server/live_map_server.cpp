@@ -53,7 +53,7 @@ int frames_of(const DriveInfo& drive) {
 
 }  // namespace
 
-LiveMapServer::LiveMapServer(const MapJob& job, std::shared_ptr<const DriveImages> images,
+LiveMapServer::LiveMapServer(const MapJob& job, std::shared_ptr<const FrameImages> images,
                              std::span<const PageFile> page, const WebServerOptions& options)
     : job_(job),
       images_(std::move(images)),
@@ -200,7 +200,7 @@ void LiveMapServer::answer(const std::string& path, WebServer::Reply reply) {
   if (path == "map.json") return json(live_json());
   if (path == "frames.json") return json(session_.frames_json());
   if (path == "status.json") return json(nlohmann::json{{"state", "live"}}.dump());
-  if (DriveImages::has(path)) return reply(images_->response(path));
+  if (FrameImages::has(path)) return reply(images_->response(path));
   reply(page_response(page_, path));
 }
 

@@ -5,7 +5,7 @@
 namespace fovea {
 
 MapServer::MapServer(std::unique_ptr<SiteContent> content, std::span<const PageFile> page,
-                     std::shared_ptr<const DriveImages> images, const WebServerOptions& options)
+                     std::shared_ptr<const FrameImages> images, const WebServerOptions& options)
     : site_(std::make_unique<MapSite>(std::move(content), page, std::move(images))),
       server_(options, [this](const std::string& path, WebServer::Reply reply) {
         site_->answer(path, std::move(reply));

@@ -15,7 +15,7 @@ class MapServer {
  public:
   /// Parameters as of MapSite.
   MapServer(std::unique_ptr<SiteContent> content, std::span<const PageFile> page,
-            std::shared_ptr<const DriveImages> images, const WebServerOptions& options);
+            std::shared_ptr<const FrameImages> images, const WebServerOptions& options);
   ~MapServer();
 
   std::string url() const { return server_.url(); }

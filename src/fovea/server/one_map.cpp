@@ -11,7 +11,7 @@ namespace {
 /// A map file.
 class OneMap : public SiteContent {
  public:
-  OneMap(const std::filesystem::path& map, const DriveImages* images,
+  OneMap(const std::filesystem::path& map, const FrameImages* images,
          const ExposureChoice& exposure)
       : tiles_(map, exposure) {
     const MapReader reader(map);
@@ -51,7 +51,7 @@ class OneMap : public SiteContent {
 }  // namespace
 
 std::unique_ptr<SiteContent> make_map_content(const std::filesystem::path& map,
-                                              const DriveImages* images,
+                                              const FrameImages* images,
                                               const ExposureChoice& exposure) {
   return std::make_unique<OneMap>(map, images, exposure);
 }
