@@ -11,12 +11,18 @@
 #include "app/viewer_page.h"
 #include "fovea/map/map_store.h"
 #include "fovea/server/live_map_server.h"
+#include "fovea/server/recent_images.h"
 
 namespace fovea::app {
 namespace {
 
 /// Value of --live without a port.
 constexpr const char* kSomePort = "some";
+
+std::shared_ptr<FrameImages> images_of(std::shared_ptr<const FrameSource> drive) {
+  if (drive->info().kind == kLiveDrive) return std::make_shared<RecentImages>(drive->info());
+  return std::make_shared<DriveImages>(std::move(drive));
+}
 
 }  // namespace
 
@@ -44,7 +50,7 @@ LiveView::LiveView(const std::string& live, MapJob& job, std::shared_ptr<const F
   if (live.empty()) return;
   WebServerOptions server;
   server.in_background = true;
-  const auto images = std::make_shared<const DriveImages>(std::move(drive));
+  const auto images = images_of(std::move(drive));
   const int port = live == kSomePort ? -1 : std::stoi(live);
   std::unique_ptr<LiveMapServer> show;
   open_at_port(server, port, [&](const WebServerOptions& options) {

@@ -51,24 +51,6 @@ const char* state_of(const TrackingStats& tracking) {
   return tracking.has_restarted || tracking.is_pose_unknown ? "restarted" : "tracked";
 }
 
-/// A live drive for the view of its map. No frame can be read again.
-class ShownDrive : public FrameSource {
- public:
-  explicit ShownDrive(DriveInfo info) : info_(std::move(info)) {
-    info_.begin = info_.end = 0;  // not known
-    info_.frames.clear();
-  }
-
-  const DriveInfo& info() const override { return info_; }
-  LoadedFrame load(int index) const override {
-    return SkippedFrame{index, SkipReason::kMissingScan, "a running robot was mapped"};
-  }
-  std::optional<TimeNs> stamp(int /*index*/) const override { return std::nullopt; }
-
- private:
-  DriveInfo info_;
-};
-
 class RobotMap {
  public:
   RobotMap(const MapArguments& arguments, const LiveArguments& live, Session& session)
@@ -120,8 +102,7 @@ class RobotMap {
 
   MapSummary map(LiveSource& source) {
     job_.on_begin = [&](const std::shared_ptr<const FrameSource>& first_frames) {
-      view_.emplace(arguments_.live, job_, std::make_shared<ShownDrive>(first_frames->info()),
-                    is_quiet());
+      view_.emplace(arguments_.live, job_, first_frames, is_quiet());
     };
     ProgressBar bar(arguments_.quiet);
     return map_live(source, job_, std::ref(bar));

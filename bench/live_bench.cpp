@@ -65,7 +65,7 @@ Run map_once(const std::shared_ptr<const FrameSource>& drive, const std::string&
   job.force = true;
   WebServerOptions server;
   server.in_background = true;
-  LiveMapServer show(job, std::make_shared<const DriveImages>(drive), kPage, server);
+  LiveMapServer show(job, std::make_shared<DriveImages>(drive), kPage, server);
   job.observer = &show;
   const std::string url = show.url();
   std::unique_ptr<Clients> clients;

@@ -8,6 +8,7 @@ import { after, before, test } from 'node:test';
 
 import { record } from './bags.mjs';
 import { BridgeServer } from './bridge_server.mjs';
+import { launchBrowser, MapPage } from './browser.mjs';
 import { ConvertDrives } from './convert_drives.mjs';
 import { programNamedBy } from './test_map.mjs';
 
@@ -211,6 +212,34 @@ test('the growing map is shown, and after the end', limit, async (t) => {
   const { status, err } = await ended;
   assert.equal(status, 130, err);
   assert.equal(contentOf('shown'), expected);
+});
+
+test('the page shows the latest images, and says which are gone', limit, async (t) => {
+  const half = plain.length / 2;
+  const play = async (messages, ...more) => {
+    const server = await bridge(t, messages);
+    const run = mapOf(server.url, 'images', '--every-frame', ...more);
+    await server.play();
+    server.close();
+    return run;
+  };
+  const { ended: first } = await play(plain.slice(0, half));
+  assert.equal((await first).status, 0);
+  const again = [...plain.slice(0, half).filter(({ topic }) => /info|static/.test(topic)), ...plain.slice(half)];
+  const { child, ended, saying } = await play(again, '--resume', '--live=0');
+  const [, url] = await saying(/is still shown at (\S+)/, 'out');
+  const browser = await launchBrowser();
+  t.after(() => browser.close());
+  const map = await MapPage.open(browser, `${url}#frame=${frames - 1}&camera=0`);
+  await map.page.locator('.frame-view.has-image').waitFor();
+  await map.page.evaluate(() => { location.hash = '#frame=0&camera=0'; });
+  await map.page.getByText('The image is no longer kept.').waitFor();
+  assert.equal(await map.page.locator('.frame-view.has-image').count(), 0);
+  await map.page.evaluate((last) => { location.hash = `#frame=${last}&camera=0`; }, frames - 1);
+  await map.page.locator('.frame-view.has-image').waitFor();
+  assert.equal(await map.page.getByText('The image is no longer kept.').count(), 0);
+  child.kill('SIGINT');
+  assert.equal((await ended).status, 130);
 });
 
 test('options that contradict a running robot are wrong usage', limit, async () => {

@@ -6,14 +6,13 @@ import { fitted, projectionOf, type Rectangle } from './intrinsics';
 import { far, near } from './map_scene';
 import { viewOfCamera } from './pose';
 import type { CameraInfo, MapInfo } from './protocol';
-import { imagePath } from './server';
+import { imagePath, whyNoImage } from './server';
 import type { Trajectory } from './trajectory';
 
 export interface FrameViewEvents {
   changed(): void;
   close(): void;
   step(frames: number): void;
-  failed(path: string): void;
 }
 
 /** The map as a frame's camera saw it, and the photograph over it: left of a divider the one,
@@ -22,6 +21,7 @@ export class FrameView {
   readonly element: HTMLElement;
   private readonly image = el('img', { alt: 'Photograph of the frame', draggable: 'false' });
   private readonly picture: HTMLElement;
+  private readonly missing = el('p', { class: 'no-image', role: 'status' });
   private readonly shade = el('div', { class: 'shade' });
   private readonly divider = el('div', { class: 'divider' });
   private readonly slider = el('input', {
@@ -49,12 +49,12 @@ export class FrameView {
       iconButton(icon('next'), 'Next frame (.)', () => events.step(1)),
       iconButton(icon('close'), 'Leave the frame (Esc)', () => events.close()));
     this.element = el('div', { class: 'frame-view', hidden: true },
-      this.shade, this.picture, this.divider, bar, this.slider);
+      this.shade, this.picture, this.missing, this.divider, bar, this.slider);
     this.slider.addEventListener('input', () => this.setCut(Number(this.slider.value) / 100));
     this.image.addEventListener('load', () => this.element.classList.add('has-image'));
     this.image.addEventListener('error', () => {
       this.element.classList.remove('has-image');
-      if (this.path !== '') events.failed(this.path);
+      if (this.path !== '') void this.sayWhyMissing(this.path);
     });
     this.dragDivider();
   }
@@ -83,6 +83,7 @@ export class FrameView {
     if (path !== this.path) {
       this.path = path;
       this.element.classList.toggle('has-image', false);
+      this.missing.textContent = '';
       if (path === '') this.image.removeAttribute('src');
       else this.image.src = path;
     }
@@ -139,11 +140,17 @@ export class FrameView {
     this.lay();
   }
 
+  private async sayWhyMissing(path: string): Promise<void> {
+    const why = await whyNoImage(path);
+    if (path === this.path) this.missing.textContent = why;
+  }
+
   private lay(): void {
     const { x, y, width, height } = this.rectangle;
     const box = { left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px` };
     Object.assign(this.shade.style, box);
     Object.assign(this.picture.style, box);
+    Object.assign(this.missing.style, { left: `${x + width / 2}px`, top: `${y + height / 2}px` });
     this.picture.style.clipPath = `inset(0 ${100 * (1 - this.cut)}% 0 0)`;
     Object.assign(this.divider.style, {
       left: `${x + this.cut * width}px`, top: `${y}px`, height: `${height}px`,

@@ -8,7 +8,7 @@ import type { MapScene } from './map_scene';
 import { place } from './navigation/view';
 import { inverseOfRigid, matrixOfPose, viewOfCamera } from './pose';
 import type { CameraInfo } from './protocol';
-import { imagePath } from './server';
+import { imagePath, whyNoImage } from './server';
 import type { Trajectory } from './trajectory';
 
 const depthWidth = 640;
@@ -25,7 +25,7 @@ export class ImageComparison {
   private texture: Texture | null = null;
 
   constructor(private readonly scene: MapScene, private readonly changed: () => void,
-              private readonly failed: (path: string) => void) {
+              private readonly failed: (why: string) => void) {
     const depthTexture = new DepthTexture(1, 1, FloatType);
     depthTexture.minFilter = depthTexture.magFilter = NearestFilter;
     this.target = new WebGLRenderTarget(1, 1, { depthTexture });
@@ -74,7 +74,9 @@ export class ImageComparison {
       this.changed();
     };
     image.onerror = () => {
-      if (this.wanted === path) this.failed(path);
+      void whyNoImage(path).then((why) => {
+        if (this.wanted === path) this.failed(why);
+      });
     };
     image.src = path;
   }

@@ -38,6 +38,16 @@ export async function untilReady(
   }
 }
 
+/** Why the server has no image for a path: one sentence. */
+export async function whyNoImage(path: string): Promise<string> {
+  try {
+    const { status } = await fetch(path, { cache: 'no-cache' });
+    return status === 410 ? 'The image is no longer kept.' : 'The frame has no image of this camera.';
+  } catch {
+    return 'The server does not answer.';
+  }
+}
+
 export function imagePath(frame: number, camera: number): string {
   return `images/${frame}/${camera}.jpg`;
 }

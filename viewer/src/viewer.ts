@@ -118,8 +118,6 @@ export class Viewer {
       changed: () => this.loop.invalidate(),
       close: () => this.leaveFrame(),
       step: (frames_) => this.stepFrame(frames_),
-      failed: (path) => this.notices.show('image',
-        { text: `There is no image ${path}. Look at another frame.` }, 6),
     });
     this.tools = new PointTools(this.scene, map, this.trajectory,
       (frame, camera) => this.lookFrom(frame, camera),
@@ -127,7 +125,7 @@ export class Viewer {
     this.line = new TrajectoryLine(this.trajectory);
     this.foveal = new FovealOverlay(map);
     this.comparison = new ImageComparison(this.scene, () => this.loop.invalidate(),
-      (path) => this.notices.show('image', { text: `There is no image ${path} to compare.` }, 6));
+      (why) => this.notices.show('image', { text: `${why} Nothing is compared.` }, 6));
     this.scene.lines.add(this.line.group, this.foveal.group);
     this.bottom = el('footer', { class: 'bottom' }, this.status, this.timeline.element);
     this.element = el('div', { class: 'viewer' }, this.canvas, this.frameView.element,

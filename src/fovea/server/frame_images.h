@@ -17,6 +17,8 @@ class FrameImages {
   virtual ~FrameImages() = default;
   /// The drive, with the cameras that the map shows and the map's numbers of its frames.
   virtual const DriveInfo& info() const = 0;
+  /// Takes the next frame that is mapped, if its images cannot be read again.
+  virtual void add(const Frame& /*frame*/) {}
   /// Whether a path of the site names an image.
   static bool has(std::string_view path) { return path.starts_with(kFolder); }
   /// The response for "images/FRAME/CAMERA.jpg". Status 404 if there is no such image.

@@ -53,7 +53,7 @@ int frames_of(const DriveInfo& drive) {
 
 }  // namespace
 
-LiveMapServer::LiveMapServer(const MapJob& job, std::shared_ptr<const FrameImages> images,
+LiveMapServer::LiveMapServer(const MapJob& job, std::shared_ptr<FrameImages> images,
                              std::span<const PageFile> page, const WebServerOptions& options)
     : job_(job),
       images_(std::move(images)),
@@ -93,6 +93,7 @@ void LiveMapServer::frame_mapped(const FrameRecord& record, const Frame* frame,
   session_.add_frame(std::move(live), T_local_submap,
                      watched ? new_points(record.index, map) : nullptr,
                      watched ? next_image(frame) : nullptr);
+  if (frame != nullptr) images_->add(*frame);
   server_.wake();
 }
 

@@ -26,7 +26,7 @@ class LiveMapServer : public MapObserver {
   /// @param images  of the drive
   /// @throws OutputError  as WebServer
   /// @throws InputError   if the map to resume cannot be read
-  LiveMapServer(const MapJob& job, std::shared_ptr<const FrameImages> images,
+  LiveMapServer(const MapJob& job, std::shared_ptr<FrameImages> images,
                 std::span<const PageFile> page, const WebServerOptions& options);
   ~LiveMapServer() override;
 
@@ -46,7 +46,7 @@ class LiveMapServer : public MapObserver {
   std::shared_ptr<ShownImage> next_image(const Frame* frame);
 
   const MapJob& job_;
-  std::shared_ptr<const FrameImages> images_;
+  std::shared_ptr<FrameImages> images_;
   std::span<const PageFile> page_;
   MapDescription description_;
   LiveSession session_;

@@ -13,6 +13,7 @@
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/map/checkpointer.h"
+#include "fovea/server/recent_images.h"
 #include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"
 
@@ -109,9 +110,7 @@ class LiveRun : public testing::Test {
     start(/*force=*/false);
   }
   void start(bool force) {
-    show_ = std::make_unique<LiveMapServer>(
-        job_, std::make_shared<const DriveImages>(std::make_shared<TestDrive>(0, kFrames)), kPage,
-        WebServerOptions());
+    show_ = std::make_unique<LiveMapServer>(job_, images_, kPage, WebServerOptions());
     CheckpointerOptions options;
     options.on_checkpoint = [this](const TileChanges& changes, const MapRows& rows) {
       show_->map_changed(changes, rows, map_);
@@ -256,6 +255,8 @@ class LiveRun : public testing::Test {
 
   TemporaryFolder folder_;
   MapJob job_;
+  std::shared_ptr<FrameImages> images_ =
+      std::make_shared<DriveImages>(std::make_shared<TestDrive>(0, kFrames));
   Random random_{5};
   int removed_ = 0;  // tiles
   TileMap map_{4.0};
@@ -360,6 +361,22 @@ TEST_F(LiveRun, TheSiteBeforeAndAfter) {
   EXPECT_EQ(map["images"], true);
   EXPECT_EQ(client.get("/tiles/tileset.json").status, 200);
   EXPECT_EQ(client.get("/tiles/r.glb").status, 200);
+}
+
+TEST_F(LiveRun, LatestImagesOfARobotAreShownToTheEnd) {
+  show_.reset();
+  file_.reset();
+  images_ = std::make_shared<RecentImages>(TestDrive(0, kFrames).info(), /*capacity=*/1);
+  start(/*force=*/true);
+  WebClient client(port());
+  drive(0, 10);
+  EXPECT_EQ(client.get("/images/9/3.jpg").status, 200);
+  EXPECT_EQ(client.get("/images/8/3.jpg").status, 410);
+  EXPECT_EQ(client.get("/images/8/3.jpg").body, "the image is no longer kept\n");
+  drive(10, kFrames);
+  finish();
+  EXPECT_EQ(client.get("/images/59/3.jpg").status, 200);
+  EXPECT_EQ(client.get("/images/9/3.jpg").status, 410);
 }
 
 TEST_F(LiveRun, EndsInTheMiddle) {
