@@ -106,7 +106,7 @@ void add_first_frames(std::span<const RawFrame> frames, const DriveDescription& 
   FirstMotion first = motion.begin(frame, frames.back().stamp + sweep_end(beginning.decoder));
   info.append(first);
   if (first.navigation && !covers_scans(*first.navigation, frames, info)) {
-    motion.leave_out_navigation();
+    motion.navigation().leave_out();
   } else if (first.navigation) {
     info.calibration.T_imu_lidar = description.T_body_lidar;
     info.navigation = std::move(first.navigation);

@@ -16,12 +16,24 @@
 
 namespace fovea {
 
-/// Motion as it came.
+/// Motion as it came. Bounded: a full list takes no further record.
 struct RawMotion {
   std::vector<RecordedPose> poses;
   std::vector<RecordedPosition> positions;
   std::vector<RecordedInertia> inertia;
   std::vector<WheelSpeed> wheels;
+
+  void add(const RecordedPose& pose) { add_to(poses, pose); }
+  void add(const RecordedPosition& position) { add_to(positions, position); }
+  void add(const RecordedInertia& record) { add_to(inertia, record); }
+  void add(const WheelSpeed& speed) { add_to(wheels, speed); }
+
+ private:
+  template <class Record>
+  static void add_to(std::vector<Record>& records, const Record& record) {
+    constexpr std::size_t kMost = 1 << 16;
+    if (records.size() < kMost) records.push_back(record);
+  }
 };
 
 /// One thread calls it, another one writes. The first OutputError ends the recording.

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "fovea/drive/drive_description.h"
 
@@ -27,6 +29,13 @@ class LiveSensors {
 
   /// "camera front".
   std::string name(std::size_t sensor) const;
+  std::vector<std::string> names() const;
+
+  // By the names of drive.toml; std::invalid_argument for others.
+
+  /// Place among the further LiDARs; absent: the first LiDAR.
+  std::optional<std::size_t> find_further_lidar(const std::string& name) const;
+  std::size_t find_camera(const std::string& name) const;
 
  private:
   const DriveDescription& description_;

@@ -130,7 +130,7 @@ class LiveSource {
   LiveFigures figures() const;
 
  private:
-  class Impl;
+  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
