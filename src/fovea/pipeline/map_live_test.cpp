@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <thread>
@@ -75,6 +78,24 @@ class MapLive : public testing::Test {
       source.close();
     });
     return map_live(source, job, {});
+  }
+
+  /// Maps the town. Frames may add nothing to the map.
+  /// @param before  called with the number of a scan before its data are sent
+  /// @param after   called with the number of mapped frames after each
+  MapSummary map_in_time(const LiveOptions& options, const std::function<void(int)>& before,
+                         const std::function<void(int)>& after) const {
+    LiveSource source(drive_toml(), options);
+    const std::jthread sensors([&] {
+      for (const auto& [stamp, call] : town_data(0, kFrames).calls()) {
+        before(int((stamp - test::kLiveStart) / SyntheticDrive::stamp_of(1)));
+        call(source);
+      }
+      source.close();
+    });
+    MapJob job = this->job("map.fovea");
+    job.texture_every_frame = false;
+    return map_live(source, job, [&](const MapProgress& progress) { after(progress.done); });
   }
 
   TemporaryFolder folder_;
@@ -232,6 +253,33 @@ TEST_F(MapLive, EachFrameIsTrackedBeforeItIsMapped) {
   std::vector<int> all(12);
   std::iota(all.begin(), all.end(), 0);
   EXPECT_EQ(tracked, all);
+}
+
+TEST_F(MapLive, FramesAddNothingWhileTheMapIsBehind) {
+  LiveOptions options = all_data();
+  options.max_scans = 2;
+  const int ahead = 4 + 2;  // scans that are read or tracked, and those of the queue
+  std::atomic<int> sent = 0;
+  const MapSummary summary = map_in_time(
+      options, [&](int scan) { sent = scan; },
+      [&](int mapped) {
+        while (sent < std::min(mapped + ahead, kFrames - 1)) std::this_thread::yield();
+      });
+  EXPECT_GT(summary.textures_skipped, 0);
+  EXPECT_LT(summary.textures_skipped, kFrames);
+  EXPECT_EQ(summary.frames_mapped, kFrames);
+}
+
+TEST_F(MapLive, EachFrameAddsToAMapThatKeepsUp) {
+  const LiveOptions options = all_data();
+  const int first = int(options.first_scans);
+  std::atomic<int> done = 0;
+  const auto wait_for_map = [&](int scan) {
+    while (scan > std::max(first, done + 1)) std::this_thread::yield();
+  };
+  const MapSummary summary = map_in_time(options, wait_for_map, [&](int mapped) { done = mapped; });
+  EXPECT_EQ(summary.textures_skipped, 0);
+  EXPECT_EQ(summary.frames_mapped, kFrames);
 }
 
 TEST_F(MapLive, WithoutAScanThereIsNoMap) {

@@ -39,7 +39,7 @@ MapRun::MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& 
       drive_records_{drive_record(source)},
       sensor_records_(sensor_records(drive)),
       is_live_(is_live),
-      threaded_(job.overlap && available_threads() > 1),
+      threaded_(is_live || (job.overlap && available_threads() > 1)),
       file_(open_output(job), checkpointer_options()),
       cache_(file_, job.memory),
       mapper_(mapper_of_drive()),
@@ -151,14 +151,21 @@ std::vector<int> MapRun::remaining_frames() const {
 
 void MapRun::map_frames(FrameStream& stream,
                         const std::function<void(const MapProgress&)>& progress) {
-  began_ = WallClock::now();
-  FramePipeline frames({.read = [&](const std::stop_token& stop) { return stream.next(stop); },
+  const auto read = [&](const std::stop_token& stop) {
+    std::optional<ReadFrame> frame = stream.next(stop);
+    if (frame) ++frames_read_;
+    return frame;
+  };
+  FramePipeline frames({.read = read,
                         .track = [&](const Frame& frame) { return track(frame); },
                         .apply_deferred = [&] { mapper_->apply_deferred_tracking(); }},
                        threaded_, job_.stop);
   try {
     while (std::optional<TrackedFrame> frame = frames.next()) {
-      if (frame->tracked) frame->tracked->task.skips_texture = is_short_of_time(*frame, frames);
+      if (frame->tracked) {
+        TrackedScan& tracked = *frame->tracked;
+        tracked.task.skips_texture = is_short_of_time(tracked.result.index);
+      }
       map_next(*frame, progress);
       checkpoint_if_due();
     }

@@ -1,6 +1,7 @@
 // A run of a mapper over a drive, with its figures and its file.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -68,7 +69,7 @@ class MapRun {
   std::unique_ptr<IncrementalMapper> mapper_of_drive();
   TrackedScan track(const Frame& frame);  // runs in the tracker's thread
   /// Whether a frame is to add nothing to the map (FrameTask::skips_texture).
-  bool is_short_of_time(const TrackedFrame& frame, const FramePipeline& frames) const;
+  bool is_short_of_time(int frame) const;
   void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
   void account_for(const FrameRecord& record, bool is_new);
   void checkpoint_if_due();
@@ -95,7 +96,7 @@ class MapRun {
   std::vector<std::optional<TimeNs>> live_stamps_;  // of all frames
   LiveState live_state_;
   std::unique_ptr<LiveClocks> clocks_;
-  WallClock::time_point began_;
+  std::atomic<int> frames_read_ = 0;  // counted by the reader's thread
   bool threaded_;
   Checkpointer file_;
   TileCache cache_;

@@ -13,11 +13,9 @@
 namespace fovea {
 namespace {
 
-/// ms from the arrival of a scan: older frames of a live drive add nothing to the map, so that
-/// tracking catches up.
-constexpr double kLongestAge = 250;
-/// ms from the beginning of a live run, which has to map the first frames meanwhile.
-constexpr double kCatchUp = 2000;
+/// A frame adds nothing to the map if this number of later ones is read: scans would soon be
+/// dropped otherwise. At 10 Hz the map is then 0.3 s behind.
+constexpr int kMostBehind = 3;
 
 }  // namespace
 
@@ -63,13 +61,11 @@ DriveRecord MapRun::live_record() const {
   return record;
 }
 
-bool MapRun::is_short_of_time(const TrackedFrame& frame, const FramePipeline& frames) const {
-  const bool may_skip = is_live_ && !job_.texture_every_frame && !job_.settings.is_paper();
+bool MapRun::is_short_of_time(int frame) const {
+  if (!is_live_ || job_.texture_every_frame || job_.settings.is_paper()) return false;
   // The first frames come all at once.
-  const bool is_first = frame.tracked->result.index < drive_.end;
-  if (!may_skip || is_first) return false;
-  const bool catches_up = milliseconds_since(began_) < kCatchUp;
-  return frames.has_next() || (!catches_up && milliseconds_since(frame.arrival()) > kLongestAge);
+  const int later = std::max(frame + 1, drive_.end);
+  return drive_.begin + frames_read_ - later >= kMostBehind;
 }
 
 }  // namespace fovea
