@@ -44,6 +44,8 @@ void Fusion::open_submap(const FrameResult& frame, const std::optional<AbsoluteP
   const std::size_t node = graph_.add_node(T_local_odom() * T_odom_lidar);
   if (measured && !std::exchange(has_navigation_pose_, true) && node > 0) {
     graph_.move(measured->T_local_node * graph_.poses().back().inverse());
+    // Of a live drive, nothing has shown before that navigation begins.
+    graph_.weaken_poses(deviations(kFreeRotation, kFreeTranslation));
   }
   if (node > 0) {
     const Submap& before = submaps_.back();

@@ -185,6 +185,36 @@ TEST(Fusion, NavigationThatBeginsLaterMovesTheSubmapsBeforeIt) {
   }
 }
 
+// Of a live drive, nothing shows before that navigation begins.
+TEST(Fusion, NavigationThatBeginsUnexpectedlyMovesTheSubmapsBeforeIt) {
+  constexpr int kBegin = 70, kFrames = 200;
+  DriveInfo info;
+  info.kind = kLiveDrive;
+  MotionHistory history(info);
+  Fusion fusion({.loop_closure = false}, {}, history);
+  const RigidMotion T_local_true = RigidMotion(Eigen::Translation3d(300, -200, 5)) *
+                                   RigidMotion(Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()));
+  Odometry odometry{0};
+  std::vector<FrameResult> results;
+  for (int i = 0; i < kFrames; ++i) {
+    // The first heading is wrong: later ones correct it.
+    const RigidMotion turned(Eigen::AngleAxisd(i == kBegin ? 0.05 : 0, Eigen::Vector3d::UnitZ()));
+    MotionData data;
+    data.poses = {{i * kTenth, T_local_true * true_pose(i) * turned}};
+    data.accuracy = {0.1};
+    if (i >= kBegin) history.add(data);
+    odometry.step(i);
+    FrameResult& result = results.emplace_back();
+    result.stamp = i * kTenth;
+    result.poses.T_odom_lidar = odometry.T_odom_lidar;
+    fusion.track(result);
+  }
+  for (int i = 0; i < kFrames; ++i) {
+    const RigidMotion T = fusion.T_local_lidar(results[std::size_t(i)]);
+    EXPECT_LT((T.translation() - (T_local_true * true_pose(i)).translation()).norm(), 0.5) << i;
+  }
+}
+
 TEST(Fusion, SwitchedOffItChangesNoPose) {
   DriveInfo info;
   std::vector<StampedPose> poses;

@@ -20,7 +20,9 @@ MotionHistory::MotionHistory(const DriveInfo& drive)
     : navigation_(drive.navigation),
       accuracy_(drive.navigation_accuracy),
       imu_(drive.imu),
-      wheels_(drive.wheels) {}
+      wheels_(drive.wheels) {
+  if (!navigation_ && drive.kind == kLiveDrive) navigation_.emplace();
+}
 
 void MotionHistory::add(const MotionData& data) {
   if (navigation_ && !data.poses.empty()) {

@@ -9,17 +9,19 @@
 namespace fovea {
 
 /// Of a drive from files, all of it from the beginning. Of a live drive, it grows with the frames,
-/// and keeps the last minute.
+/// and keeps the last minute. Navigation of a live drive may begin with any frame.
 class MotionHistory {
  public:
   explicit MotionHistory(const DriveInfo& drive);
   MotionHistory(const MotionHistory&) = delete;
   MotionHistory& operator=(const MotionHistory&) = delete;
 
-  /// Adds the data of a frame. Drops data of sensors that the drive did not have at its beginning.
+  /// Adds the data of a frame. Drops data of an IMU or wheels that the drive did not have at its
+  /// beginning.
   void add(const MotionData& data);
 
-  // Null if the drive lacks them; the addresses never change.
+  // Null if the drive lacks them; the addresses never change. Navigation of a live drive is empty
+  // before it begins.
   const Trajectory* navigation() const { return navigation_ ? &*navigation_ : nullptr; }
   const ImuData* imu() const { return imu_ ? &*imu_ : nullptr; }
   const WheelData* wheels() const { return wheels_ ? &*wheels_ : nullptr; }

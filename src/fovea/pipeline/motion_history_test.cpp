@@ -35,6 +35,22 @@ TEST(MotionHistory, GrowsWithTheFramesAndKeepsAMinute) {
   EXPECT_NEAR(navigation->at(from_seconds(99.5))->translation().x(), 995, 1e-9);
 }
 
+TEST(MotionHistory, NavigationOfALiveDriveMayBeginLater) {
+  DriveInfo drive;
+  drive.kind = kLiveDrive;
+  MotionHistory history(drive);
+  const Trajectory* const navigation = history.navigation();
+  ASSERT_NE(navigation, nullptr);
+  EXPECT_FALSE(navigation->at(0));
+  EXPECT_FALSE(navigation->motion(0, 0));
+  MotionData data;
+  data.poses = {pose_at(1, 10), pose_at(2, 20)};
+  data.accuracy = {0.1, 0.2};
+  history.add(data);
+  EXPECT_NEAR(navigation->at(from_seconds(1.5))->translation().x(), 15, 1e-9);
+  EXPECT_EQ(history.navigation_accuracy(), data.accuracy);
+}
+
 TEST(MotionHistory, ASensorThatTheDriveLackedAtItsBeginningIsNotUsed) {
   const DriveInfo drive;
   MotionHistory history(drive);

@@ -53,7 +53,7 @@ std::string NavigationCheck::observe(TimeNs stamp, const RigidMotion& T_local_li
 }
 
 bool NavigationCheck::has_fix() const {
-  if (navigation_ == nullptr) return false;
+  if (navigation_ == nullptr || navigation_->poses().empty()) return false;
   return accuracy_.empty() || std::any_of(accuracy_.begin(), accuracy_.end(),
                                           [](double accuracy) { return std::isfinite(accuracy); });
 }

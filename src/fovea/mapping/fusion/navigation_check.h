@@ -16,7 +16,7 @@ namespace fovea {
 /// jumps back.
 class NavigationCheck {
  public:
-  /// @param navigation  T_local_lidar, or null; must outlive the check
+  /// @param navigation  T_local_lidar, or null; must outlive the check. Empty: it may begin later
   /// @param accuracy    of each of its poses, see DriveInfo::navigation_accuracy
   NavigationCheck(const Trajectory* navigation, const std::vector<double>& accuracy)
       : navigation_(navigation), accuracy_(accuracy) {}

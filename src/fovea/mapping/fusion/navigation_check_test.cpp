@@ -97,6 +97,16 @@ TEST_F(NavigationCheckTest, WithoutSatellitesAPositionIsNoMeasurement) {
   EXPECT_TRUE(check_->measurement(0, 11 * kTenth));
 }
 
+TEST(NavigationCheckBefore, NavigationThatHasNotBegunMeasuresNothing) {
+  const Trajectory navigation;
+  const std::vector<double> none;
+  NavigationCheck check(&navigation, none);
+  EXPECT_EQ(check.observe(0, RigidMotion::Identity()), "");
+  EXPECT_FALSE(check.has_fix());
+  EXPECT_FALSE(check.stated_accuracy(0));
+  EXPECT_FALSE(check.measurement(0, 0));
+}
+
 TEST(NavigationCheckWithout, HasNoFaults) {
   const std::vector<double> none;
   NavigationCheck check(nullptr, none);

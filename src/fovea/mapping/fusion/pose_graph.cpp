@@ -141,6 +141,10 @@ void PoseGraph::move(const RigidMotion& T_new_old) {
   for (RigidMotion& pose : poses_) pose = T_new_old * pose;
 }
 
+void PoseGraph::weaken_poses(const Twist& sigma) {
+  for (AbsolutePose& measured : absolute_) measured.sigma = sigma;
+}
+
 void PoseGraph::add(const RelativePose& measurement) {
   if (measurement.from >= measurement.to || measurement.to >= poses_.size()) {
     throw std::invalid_argument("a relative pose needs two nodes, the earlier first");

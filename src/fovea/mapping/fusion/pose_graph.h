@@ -44,6 +44,8 @@ class PoseGraph {
 
   /// Moves all poses by one motion.
   void move(const RigidMotion& T_new_old);
+  /// Sets the standard deviations of the measured poses so far.
+  void weaken_poses(const Twist& sigma);
 
   const std::vector<RigidMotion>& poses() const { return poses_; }
   /// Squared error of a measurement in standard deviations at the present poses.
