@@ -22,11 +22,8 @@ export class BridgeServer {
       capabilities: takesPoses ? ['clientPublish'] : [], supportedEncodings: takesPoses ? ['json'] : undefined });
     this.subscribed = new Set();
     this.channels = new Map();
-    for (const { name, type } of topicsOf(messages)) {
-      this.channels.set(name, this.server.addChannel({
-        topic: name, encoding: ros1 ? 'ros1' : 'cdr', schemaName: type,
-        schema: ros1 ? ros1SchemaOf(type) : schemaOf(type), schemaEncoding: ros1 ? 'ros1msg' : 'ros2msg' }));
-    }
+    this.ros1 = ros1;
+    for (const topic of topicsOf(messages)) this.channels.set(topic.name, this.offer(topic));
     this.server.on('subscribe', (channel) => this.subscribed.add(channel));
     this.server.on('unsubscribe', (channel) => this.subscribed.delete(channel));
     this.needed = new Set(this.channels.keys());
@@ -36,6 +33,14 @@ export class BridgeServer {
       this.connection = connection;
       this.server.handleConnection(connection, 'client');
     });
+  }
+
+  /// Advertises a channel, and returns its number.
+  offer({ name, type }) {
+    const { ros1 } = this;
+    return this.server.addChannel({
+      topic: name, encoding: ros1 ? 'ros1' : 'cdr', schemaName: type,
+      schema: ros1 ? ros1SchemaOf(type) : schemaOf(type), schemaEncoding: ros1 ? 'ros1msg' : 'ros2msg' });
   }
 
   get url() {
