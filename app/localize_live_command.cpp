@@ -146,10 +146,7 @@ class RobotLocalization {
 
 void localize_robot(const LocalizeArguments& arguments, const LiveArguments& live,
                     Session& session) {
-  CommandFiles files = files_of(arguments);
-  files.folder = {live.record, FolderUse::kReplace};
-  check_files(files);
-  check_recording(live);
+  check_files_of_robot(files_of(arguments), live);
   const ThreadLimit threads(arguments.threads);
   RobotLocalization(arguments, live, session).run();
 }

@@ -142,10 +142,7 @@ class RobotMap {
 }  // namespace
 
 void map_robot(const MapArguments& arguments, const LiveArguments& live, Session& session) {
-  CommandFiles files = files_of(arguments);
-  files.folder = {live.record, FolderUse::kReplace};
-  check_files(files);
-  check_recording(live);
+  check_files_of_robot(files_of(arguments), live);
   const ThreadLimit threads(arguments.threads);
   RobotMap(arguments, live, session).run();
 }

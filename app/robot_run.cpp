@@ -34,7 +34,9 @@ LiveTopicsOptions topics_options(const DriveArguments& drive, const LiveArgument
   return options;
 }
 
-void check_recording(const LiveArguments& live) {
+void check_files_of_robot(CommandFiles files, const LiveArguments& live) {
+  files.folder = {live.record, FolderUse::kReplace};
+  check_files(files);
   std::error_code ignored;
   if (live.record.empty() || !fs::exists(fs::symlink_status(live.record, ignored))) return;
   throw OutputError("the folder exists already", live.record, "remove it, or choose another name");

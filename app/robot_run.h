@@ -7,6 +7,7 @@
 #include "app/drive_arguments.h"
 #include "app/live_arguments.h"
 #include "app/robot_reader.h"
+#include "fovea/drive/command_files.h"
 
 namespace fovea::app {
 
@@ -16,8 +17,9 @@ bridge::BridgeOptions bridge_options(const std::string& address, const LiveArgum
 
 LiveTopicsOptions topics_options(const DriveArguments& drive, const LiveArguments& live);
 
-/// OutputError if there is something at the place of the recording.
-void check_recording(const LiveArguments& live);
+/// Checks the files of a command and its recording.
+/// @throws OutputError  if there is something at the place of the recording, or as check_files()
+void check_files_of_robot(CommandFiles files, const LiveArguments& live);
 
 /// Throws what ended a reader that has no source.
 [[noreturn]] void throw_missing(RobotReader& reader, const std::string& address);
