@@ -2,13 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <fstream>
 #include <utility>
 
 #include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
-#include "fovea/core/output_file.h"
 #include "fovea/core/read_file.h"
 #include "fovea/core/thread.h"
 #include "fovea/drive/writers/motion_tables.h"
@@ -18,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFramesAhead = 4;  // of the writer
+constexpr std::size_t kFramesAhead = 4;      // of the writer
+constexpr std::size_t kFramesOfTables = 16;  // whose stamps are in memory
 
 /// ConfigError for sensors whose folder is not the default one: the writer uses that.
 void require_default_folders(const DriveDescription& description) {
@@ -130,6 +128,7 @@ void LiveRecorder::write(const Item& item) {
   for (const auto& image : frame.images) {
     if (image) write_image(frame.index, *image);
   }
+  if (++frames_ % kFramesOfTables == 0) writer_.flush_stamps();
 }
 
 void LiveRecorder::write_scan(int number, const std::string& lidar, const LiveScan& scan) {
@@ -152,33 +151,20 @@ void LiveRecorder::write_image(int number, const LiveImage& image) {
 }
 
 void LiveRecorder::write_motion(const RawMotion& motion) {
-  std::string rows;
-  const auto add_rows = [&](const auto& records) {
-    rows.clear();
-    for (const auto& record : records) rows += table_row(record);
+  const auto append = [&](const char* table, const char* header, const auto& records,
+                          auto&& row_of) {
+    std::string rows;
+    for (const auto& record : records) rows += row_of(record);
+    if (!rows.empty()) writer_.append_rows(table, header, rows);
   };
-  add_rows(motion.poses);
-  append("poses.csv", kPosesHeader, rows);
-  add_rows(motion.inertia);
-  append("imu.csv", kInertiaHeader, rows);
-  add_rows(motion.wheels);
-  append("wheels.csv", kWheelsHeader, rows);
-  rows.clear();
-  for (const RecordedPosition& position : motion.positions) {
-    rows += table_row(position, /*has_velocities=*/true);
-  }
-  append("gnss.csv", kMovingPositionsHeader, rows);
-}
-
-void LiveRecorder::append(const char* table, const char* header, const std::string& rows) {
-  if (rows.empty()) return;
-  const fs::path file = writer_.folder() / table;
-  const bool is_new = !fs::exists(file);
-  std::ofstream stream(file, std::ios::binary | std::ios::app);
-  if (is_new) stream << header;
-  stream << rows;
-  stream.close();
-  if (!stream) throw_output_error(file, errno);
+  const auto plain = [](const auto& record) { return table_row(record); };
+  append("poses.csv", kPosesHeader, motion.poses, plain);
+  append("imu.csv", kInertiaHeader, motion.inertia, plain);
+  append("wheels.csv", kWheelsHeader, motion.wheels, plain);
+  append("gnss.csv", kMovingPositionsHeader, motion.positions,
+         [](const RecordedPosition& position) {
+           return table_row(position, /*has_velocities=*/true);
+         });
 }
 
 }  // namespace fovea

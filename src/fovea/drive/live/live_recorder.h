@@ -68,11 +68,11 @@ class LiveRecorder {
   void write_scan(int number, const std::string& lidar, const LiveScan& scan);
   void write_image(int number, const LiveImage& image);
   void write_motion(const RawMotion& motion);
-  void append(const char* table, const char* header, const std::string& rows);
 
   std::string drive_toml_;
   DriveDescription description_;
   GenericDriveWriter writer_;
+  std::size_t frames_ = 0;  // that were written
   BoundedQueue<Item> queue_;
   std::promise<void> written_;  // by the writer thread
   std::future<void> result_ = written_.get_future();

@@ -113,4 +113,27 @@ TEST_F(LiveRecording, RefusesWhatItCannotWrite) {
               HasSubstr("lidar.folder"));
 }
 
+// Memory is bounded: stamps are in the folder, and no longer in the writer.
+TEST_F(LiveRecording, StampsAreWrittenAsTheyCome) {
+  GenericDriveWriter writer(root_);
+  const LiveData data = live_car(3);
+  const auto write = [&](int i) {
+    writer.write_scan(i, 100 + i, data.scans[std::size_t(i)].points);
+    writer.write_encoded_image("front", i, 200 + i, live_png(i), ".png");
+  };
+  const auto table = [&](const char* folder) {
+    return read_text(writer.folder() / folder / "stamps.csv");
+  };
+  write(0);
+  write(1);
+  writer.flush_stamps();
+  EXPECT_EQ(table("lidar"), "index,time_ns\n0,100\n1,101\n");
+  EXPECT_EQ(table("images/front"), "index,time_ns,exposure_s\n0,200,\n1,201,\n");
+  write(2);
+  writer.set_exposure("front", 2, 0.01);
+  writer.flush_stamps();
+  EXPECT_EQ(table("lidar"), "index,time_ns\n0,100\n1,101\n2,102\n");
+  EXPECT_EQ(table("images/front"), "index,time_ns,exposure_s\n0,200,\n1,201,\n2,202,0.01\n");
+}
+
 }  // namespace fovea::live_recorder_test

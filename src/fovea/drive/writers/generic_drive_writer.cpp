@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
+#include <fstream>
 #include <stdexcept>
 
 #include "fovea/core/angle.h"
+#include "fovea/core/output_file.h"
 #include "fovea/core/plain_name.h"
 #include "fovea/drive/writers/motion_tables.h"
 #include "fovea/drive/writers/png_encode.h"
@@ -58,21 +61,25 @@ std::string kitti_text(const PointCloud& scan) {
   return bytes;
 }
 
+constexpr const char* kStampsHeader = "index,time_ns\n";
+constexpr const char* kExposuresHeader = "index,time_ns,exposure_s\n";
+
+std::string stamp_rows(const std::map<int, TimeNs>& stamps) {
+  std::string rows;
+  for (const auto& [number, time] : stamps) rows += fmt::format("{},{}\n", number, time);
+  return rows;
+}
+
 /// @param exposures  s
-std::string stamps_text(const std::map<int, TimeNs>& stamps,
-                        const std::map<int, double>& exposures = {}) {
-  std::string text = exposures.empty() ? "index,time_ns\n" : "index,time_ns,exposure_s\n";
+std::string exposure_rows(const std::map<int, TimeNs>& stamps,
+                          const std::map<int, double>& exposures) {
+  std::string rows;
   for (const auto& [number, time] : stamps) {
-    text += fmt::format("{},{}", number, time);
     const auto exposure = exposures.find(number);
-    if (exposure != exposures.end()) {
-      text += fmt::format(",{}", exposure->second);
-    } else if (!exposures.empty()) {
-      text += ',';
-    }
-    text += '\n';
+    rows += exposure == exposures.end() ? fmt::format("{},{},\n", number, time)
+                                        : fmt::format("{},{},{}\n", number, time, exposure->second);
   }
-  return text;
+  return rows;
 }
 
 std::string motion_text(const QuaternionMotion& T) {
@@ -189,14 +196,44 @@ void GenericDriveWriter::finish(const RecordedDrive& drive) {
   finish(std::string_view(drive_toml(drive)));
 }
 
+void GenericDriveWriter::append_rows(const std::filesystem::path& name, std::string_view header,
+                                     std::string_view rows) const {
+  const std::filesystem::path file = folder() / name;
+  const bool is_new = !std::filesystem::exists(file);
+  std::ofstream stream(file, std::ios::binary | std::ios::app);
+  if (is_new) stream << header;
+  stream << rows;
+  stream.close();
+  if (!stream) throw_output_error(file, errno);
+}
+
+void GenericDriveWriter::flush_stamps() {
+  are_exposures_flushed_ = true;
+  write_stamps();
+}
+
+void GenericDriveWriter::write_stamps() {
+  const std::lock_guard lock(mutex_);
+  for (auto& [lidar, stamps] : scan_stamps_) {
+    append_rows(scan_folder(lidar) / "stamps.csv", kStampsHeader, stamp_rows(stamps));
+    stamps.clear();
+  }
+  for (auto& [camera, stamps] : image_stamps_) {
+    std::map<int, double>& exposures = exposures_[camera];
+    const std::filesystem::path table = image_folder(camera) / "stamps.csv";
+    if (exposures.empty() && !are_exposures_flushed_) {
+      append_rows(table, kStampsHeader, stamp_rows(stamps));
+    } else {
+      append_rows(table, kExposuresHeader, exposure_rows(stamps, exposures));
+    }
+    stamps.clear();
+    exposures.clear();
+  }
+}
+
 void GenericDriveWriter::finish(std::string_view toml) {
   folder_.write("drive.toml", toml);
-  for (const auto& [lidar, stamps] : scan_stamps_) {
-    folder_.write(scan_folder(lidar) / "stamps.csv", stamps_text(stamps));
-  }
-  for (const auto& [camera, stamps] : image_stamps_) {
-    folder_.write(image_folder(camera) / "stamps.csv", stamps_text(stamps, exposures_[camera]));
-  }
+  write_stamps();
   folder_.commit();
 }
 

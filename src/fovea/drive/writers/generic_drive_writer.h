@@ -109,6 +109,12 @@ class GenericDriveWriter {
                            std::string_view bytes, const std::string& extension);
   /// A file beside the recording: of truth/ (docs/simulator.md) or depth/, or tracklet_labels.xml.
   void write_file(const std::filesystem::path& name, std::string_view bytes) const;
+  /// Writes the stamps and exposures so far, and forgets them: memory is bounded. Further scans and
+  /// images have higher numbers.
+  void flush_stamps();
+  /// Appends rows to a table of the drive. A new one gets the header.
+  void append_rows(const std::filesystem::path& name, std::string_view header,
+                   std::string_view rows) const;
   /// Where the drive grows, for what writes files itself, of it or for a while.
   const std::filesystem::path& folder() const { return folder_.partial(); }
   /// Folder of the truth.
@@ -122,11 +128,15 @@ class GenericDriveWriter {
  private:
   using Stamps = std::map<int, TimeNs>;
 
+  void write_stamps();
+
   OutputFolder folder_;
   std::mutex mutex_;                                        // of the stamps
   std::map<std::string, Stamps> scan_stamps_;               // by LiDAR
   std::map<std::string, Stamps> image_stamps_;              // by camera
   std::map<std::string, std::map<int, double>> exposures_;  // by camera, s
+  /// A table that was begun has exposures, since later images may state some.
+  bool are_exposures_flushed_ = false;
 };
 
 }  // namespace fovea
