@@ -1,12 +1,22 @@
 // Motion that sensors other than the LiDAR measured.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
+#include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/imu_data.h"
 #include "fovea/geometry/trajectory.h"
 
 namespace fovea {
+
+/// Where the frame `local` of navigation lies.
+struct NavigationOrigin {
+  std::optional<GeodeticPoint> point;    ///< of positions; local is east-north-up there
+  CoordinateReference coordinates;       ///< of `point`
+  std::optional<Eigen::Vector3d> world;  ///< of poses: in their world, whose axes local has
+};
 
 /// Measurements in strictly increasing time.
 struct MotionData {
@@ -14,6 +24,8 @@ struct MotionData {
   std::vector<double> accuracy;    ///< of each pose, see DriveInfo::navigation_accuracy
   std::vector<ImuSample> imu;
   std::vector<WheelSpeed> wheels;
+  /// Navigation of the drive begins with these poses, after the first frames.
+  std::optional<NavigationOrigin> begins;
 };
 
 }  // namespace fovea

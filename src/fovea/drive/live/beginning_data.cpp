@@ -99,8 +99,6 @@ SensorUse find_use(const DriveDescription& description, const DriveOptions& opti
   is_used[sensors.positions()] = info.navigation && !by_poses;
   is_used[sensors.imu()] = info.imu.has_value();
   is_used[sensors.wheels()] = info.wheels.has_value();
-  is_wanted[sensors.poses()] = options.use_navigation && !info.navigation;
-  is_wanted[sensors.positions()] = is_wanted[sensors.poses()];
   is_wanted[sensors.imu()] = options.use_imu && description.imu;
   is_wanted[sensors.wheels()] = options.use_imu;
   return use;

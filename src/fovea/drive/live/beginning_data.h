@@ -24,7 +24,8 @@ FirstData first_data(const FrameQueue& queue, const DriveDescription& descriptio
 /// By number of the sensor (LiveSensors).
 struct SensorUse {
   std::vector<bool> is_used;
-  std::vector<bool> is_wanted;  ///< whether it would be used if it had sent data
+  /// Whether it would be used if it had sent data, and is not used later.
+  std::vector<bool> is_wanted;
 };
 
 /// @param by_poses  whether navigation has poses, not positions

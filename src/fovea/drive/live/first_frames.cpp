@@ -55,9 +55,9 @@ bool covers_scans(const Trajectory& T_local_lidar, std::span<const RawFrame> fra
         return T_local_lidar.at(frame.stamp).has_value();
       }));
   if (reached == frames.size()) return true;
-  info.warn(fmt::format("poses or positions reach {} of the first {} scans{}", reached,
-                        frames.size(),
-                        reached == 0 ? ", are their times of one clock? No navigation" : ""));
+  info.warn(
+      fmt::format("poses or positions reach {} of the first {} scans{}", reached, frames.size(),
+                  reached == 0 ? ", are their times of one clock? No navigation so far" : ""));
   return reached > 0;
 }
 
@@ -106,7 +106,7 @@ void add_first_frames(std::span<const RawFrame> frames, const DriveDescription& 
   FirstMotion first = motion.begin(frame, frames.back().stamp + sweep_end(beginning.decoder));
   info.append(first);
   if (first.navigation && !covers_scans(*first.navigation, frames, info)) {
-    motion.navigation().leave_out();
+    motion.navigation().postpone("poses or positions reach none of the first scans");
   } else if (first.navigation) {
     info.calibration.T_imu_lidar = description.T_body_lidar;
     info.navigation = std::move(first.navigation);

@@ -90,6 +90,15 @@ RawFrame LiveInput::take_frame() {
   return frame;
 }
 
+MotionData LiveInput::take_motion(const RawFrame& frame) {
+  MotionData motion = motion_.take(frame.stamp, end_of_sweep(frame.stamp));
+  if (motion.begins) {
+    watch_.use(motion_.navigation().is_by_poses() ? sensors_.poses() : sensors_.positions(),
+               frame.stamp);
+  }
+  return motion;
+}
+
 LiveFigures LiveInput::figures() const {
   LiveFigures figures = figures_;
   figures.append(motion_.navigation().messages());

@@ -71,7 +71,7 @@ class LiveInput {
   /// Removes the oldest scan with its images, without its motion.
   RawFrame take_frame();
   /// The motion up to the end of a frame, since the frame before.
-  MotionData take_motion(const RawFrame& frame) { return motion_.take(end_of_sweep(frame.stamp)); }
+  MotionData take_motion(const RawFrame& frame);
   /// The next frame gets the motion of a frame that is skipped.
   void give_back(MotionData motion) { motion_.give_back(std::move(motion)); }
 

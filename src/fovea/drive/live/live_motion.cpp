@@ -64,9 +64,9 @@ FirstMotion LiveMotion::begin(const LocalFrame& frame, TimeNs until) {
   return first;
 }
 
-MotionData LiveMotion::take(TimeNs until) {
+MotionData LiveMotion::take(TimeNs stamp, TimeNs until) {
   MotionData data;
-  navigation_.take(until, imu_.records(), data);
+  navigation_.take(stamp, until, imu_.records(), data);
   data.imu = imu_.take(until);
   data.wheels = wheels_.take(until);
   imu_.records().drop_before(until - LiveNavigation::kWindow);
@@ -75,6 +75,7 @@ MotionData LiveMotion::take(TimeNs until) {
   append(all.accuracy, data.accuracy);
   append(all.imu, data.imu);
   append(all.wheels, data.wheels);
+  if (data.begins) all.begins = data.begins;
   return all;
 }
 

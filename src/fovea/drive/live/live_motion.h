@@ -50,7 +50,8 @@ class LiveMotion {
   FirstMotion begin(const LocalFrame& frame, TimeNs until);
 
   /// The results after those before, up to the first record at `until` or later.
-  MotionData take(TimeNs until);
+  /// @param stamp  of the frame
+  MotionData take(TimeNs stamp, TimeNs until);
   /// The motion of a frame that is skipped. The next one gets it.
   void give_back(MotionData skipped);
 

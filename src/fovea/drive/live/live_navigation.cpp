@@ -12,6 +12,19 @@ namespace {
 /// Orientations further away from a position do not serve it (gnss_table.cpp).
 constexpr TimeNs kOrientationReach = kNsPerSecond / 10;
 
+/// m, in the window: positions of a standing receiver wander by less.
+constexpr double kLeastWay = 5;
+
+/// Largest distance from the first pose, m.
+double way_of(const Trajectory& T_local_lidar) {
+  const Eigen::Vector3d first = T_local_lidar.poses().front().T_local_body.translation();
+  double way = 0;
+  for (const StampedPose& pose : T_local_lidar.poses()) {
+    way = std::max(way, (pose.T_local_body.translation() - first).norm());
+  }
+  return way;
+}
+
 }  // namespace
 
 bool LiveNavigation::uses_orientations(const Inertia& inertia) const {
@@ -63,31 +76,70 @@ NavigationTables LiveNavigation::tables(TimeNs until, const Inertia& inertia) co
   return tables;
 }
 
-GenericNavigation LiveNavigation::begin(const LocalFrame& frame, TimeNs until,
-                                        const Inertia& inertia) {
-  frame_ = frame;
-  by_poses_ = !poses_.empty();
-  if (!is_used_) return {};
-  if (empty()) {
-    is_used_ = false;
-    GenericNavigation none;
-    none.notes.push_back("neither poses nor positions came: no navigation");
-    return none;
+bool LiveNavigation::begin_with(const GenericNavigation& navigation) {
+  // Positions without any fix place nothing.
+  const bool is_usable = navigation.T_local_lidar && (is_by_poses() || navigation.origin);
+  if (!is_usable) {
+    problem_ = navigation.warnings.empty() ? "" : navigation.warnings.back();
+    return false;
   }
-  GenericNavigation navigation =
-      convert_navigation(tables(until, inertia), name_, description_, frame);
-  is_used_ = navigation.T_local_lidar.has_value();
-  if (is_used_) {
-    frame_ = navigation.frame;
-    last_pose_ = navigation.T_local_lidar->poses().back().time;
-  }
-  return navigation;
+  by_poses_ = is_by_poses();
+  frame_ = navigation.frame;
+  return true;
 }
 
-void LiveNavigation::take(TimeNs until, const Inertia& inertia, MotionData& data) {
+GenericNavigation LiveNavigation::begin(const LocalFrame& frame, TimeNs until,
+                                        const Inertia& inertia) {
+  given_ = frame_ = frame;
+  if (!is_used_) return {};
+  if (!empty()) {
+    GenericNavigation navigation =
+        convert_navigation(tables(until, inertia), name_, description_, frame);
+    if (begin_with(navigation)) {
+      last_pose_ = navigation.T_local_lidar->poses().back().time;
+      return navigation;
+    }
+  }
+  GenericNavigation none;
+  none.notes.push_back(empty() ? "neither poses nor positions came: no navigation so far"
+                               : "no navigation so far: " + problem_);
+  return none;
+}
+
+void LiveNavigation::postpone(std::string problem) {
+  by_poses_.reset();
+  last_pose_.reset();
+  frame_ = given_;
+  problem_ = std::move(problem);
+}
+
+void LiveNavigation::try_to_begin(TimeNs stamp, const GenericNavigation& navigation,
+                                  MotionData& data) {
+  const auto& T_local_lidar = navigation.T_local_lidar;
+  if (T_local_lidar && T_local_lidar->poses().front().time > stamp) return;  // a later frame
+  if (!T_local_lidar || !T_local_lidar->at(stamp)) {
+    problem_ = navigation.warnings.empty()
+                   ? "poses or positions reach no scan, are their times of one clock?"
+                   : navigation.warnings.back();
+    return;
+  }
+  if (navigation.headings_by_way && way_of(*T_local_lidar) < kLeastWay) {
+    problem_ = "positions without attitudes do not move: no heading is known";
+    return;
+  }
+  if (!begin_with(navigation)) return;
+  data.begins = NavigationOrigin{navigation.origin, description_.coordinates, frame_.world};
+}
+
+void LiveNavigation::take(TimeNs stamp, TimeNs until, const Inertia& inertia, MotionData& data) {
   if (!is_used_) return drop_before(until);
+  LocalFrame frame = frame_;
+  if (!by_poses_) frame.time = stamp;
   try {
-    add_new_poses(convert_navigation(tables(until, inertia), name_, description_, frame_), data);
+    const GenericNavigation navigation =
+        convert_navigation(tables(until, inertia), name_, description_, frame);
+    if (!by_poses_ && !empty()) try_to_begin(stamp, navigation, data);
+    if (by_poses_) add_new_poses(navigation, data);
   } catch (const InputError& error) {
     warn_once(error.what());
   }
@@ -118,6 +170,12 @@ void LiveNavigation::drop_before(TimeNs time) {
 void LiveNavigation::warn_once(const std::string& text) {
   const auto& warnings = messages_.warnings;
   if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) messages_.warn(text);
+}
+
+Messages LiveNavigation::messages() const {
+  Messages messages = messages_;
+  if (is_used_ && !by_poses_ && !problem_.empty()) messages.warn("no navigation: " + problem_);
+  return messages;
 }
 
 }  // namespace fovea

@@ -15,6 +15,8 @@
 namespace fovea {
 
 /// Converts records as the tables of a drive's folder are converted. Each pose comes once.
+///
+/// Navigation begins with the first scans, or with a later one for which records can be used.
 class LiveNavigation {
  public:
   using Inertia = RecordWindow<RecordedInertia>;
@@ -35,18 +37,20 @@ class LiveNavigation {
   bool reaches(TimeNs time, TimeNs longest_step, const Inertia& inertia) const;
   void pass(TimeNs time);
 
-  /// Fixes the frame `local`. Converts the records up to the first one at `until` or later.
+  /// Converts the records up to the first one at `until` or later. If they can be used, navigation
+  /// begins, and the frame `local` is fixed. Otherwise the result has a note only.
   /// @throws InputError  as convert_navigation()
   GenericNavigation begin(const LocalFrame& frame, TimeNs until, const Inertia& inertia);
-  /// take() then has no poses.
-  void leave_out() { is_used_ = false; }
+  /// Takes begin() back: navigation may begin later.
+  void postpone(std::string problem);
   /// Adds the poses after those before, up to the first record at `until` or later.
-  void take(TimeNs until, const Inertia& inertia, MotionData& data);
+  /// @param stamp  of the frame
+  void take(TimeNs stamp, TimeNs until, const Inertia& inertia, MotionData& data);
 
   bool is_by_poses() const { return by_poses_.value_or(!poses_.empty()); }
   const LocalFrame& frame() const { return frame_; }
-  /// Problems that came up after begin(); each of them once.
-  const Messages& messages() const { return messages_; }
+  /// Problems that came up after begin(); each of them once. Why navigation has not begun.
+  Messages messages() const;
 
   /// Records are converted in a window: it shows positions that are far from the others.
   static constexpr TimeNs kWindow = 10 * kNsPerSecond;
@@ -55,6 +59,11 @@ class LiveNavigation {
   bool uses_orientations(const Inertia& inertia) const;
   /// Tables of the records up to the first one at `until` or later.
   NavigationTables tables(TimeNs until, const Inertia& inertia) const;
+  /// Begins if the navigation can be used.
+  /// @return whether it can
+  bool begin_with(const GenericNavigation& navigation);
+  /// Begins at a frame if the records can be used for it.
+  void try_to_begin(TimeNs stamp, const GenericNavigation& navigation, MotionData& data);
   void add_new_poses(const GenericNavigation& navigation, MotionData& data);
   void drop_before(TimeNs time);
   void warn_once(const std::string& text);
@@ -64,8 +73,9 @@ class LiveNavigation {
   RecordWindow<RecordedPose> poses_;
   RecordWindow<RecordedPosition> positions_;
   bool is_used_;
-  std::optional<bool> by_poses_;  // from begin() on
-  LocalFrame frame_;
+  std::optional<bool> by_poses_;     // since navigation has begun
+  LocalFrame given_, frame_;         // before and since
+  std::string problem_;              // why navigation has not begun
   std::optional<double> heading_;    // of the body at the last pose
   std::optional<TimeNs> last_pose_;  // of the last results
   Messages messages_;

@@ -26,6 +26,14 @@ void SensorWatch::begin(const std::vector<bool>& is_used, const std::vector<bool
   }
 }
 
+void SensorWatch::use(std::size_t sensor, TimeNs stamp) {
+  Sensor& of = sensors_[sensor];
+  if (of.state == State::kUsed) return;
+  of.state = State::kUsed;
+  messages_.notes.push_back(
+      fmt::format("{} is used since {:.1f} s of the drive", of.name, time_of(stamp)));
+}
+
 void SensorWatch::add(std::size_t sensor, TimeNs stamp) {
   if (!newest_) newest_ = stamp;
   if (sensor == 0 && !first_) first_ = stamp;
@@ -51,7 +59,7 @@ void SensorWatch::check() {
     // A slow sensor may send nothing for longer.
     if (clock_ - sensor.last_clock <= std::max(kStoppedAfter, 3 * sensor.step)) continue;
     warn(fmt::format("{} has sent no data since {:.1f} s of the drive", sensor.name,
-                     seconds(*sensor.last - first_.value_or(*sensor.last))));
+                     time_of(*sensor.last)));
     sensor.state = State::kStopped;
     sensor.step = 0;
   }

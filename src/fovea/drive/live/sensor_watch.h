@@ -20,6 +20,8 @@ class SensorWatch {
   /// @param is_used    by sensor
   /// @param is_wanted  by sensor: whether it would be used if it had sent data
   void begin(const std::vector<bool>& is_used, const std::vector<bool>& is_wanted);
+  /// A sensor is used from a time on.
+  void use(std::size_t sensor, TimeNs stamp);
   /// A sensor has sent data.
   void add(std::size_t sensor, TimeNs stamp);
 
@@ -36,6 +38,8 @@ class SensorWatch {
   };
   /// Looks for sensors that have stopped.
   void check();
+  /// s from the first scan.
+  double time_of(TimeNs stamp) const { return seconds(stamp - first_.value_or(stamp)); }
   void warn(std::string text);
 
   std::vector<Sensor> sensors_;

@@ -37,6 +37,7 @@ struct GenericNavigation : Messages {
   std::vector<double> accuracy;             ///< see DriveInfo::navigation_accuracy
   std::optional<GeodeticPoint> origin;  ///< of `local`; absent with poses.csv, and without a fix
   LocalFrame frame;                     ///< of `local`: with its place, where poses are of use
+  bool headings_by_way = false;         ///< nothing states attitudes of positions
 };
 
 /// The tables of a drive's folder. The time of the scans, where it is known, shows the unit of

@@ -230,6 +230,8 @@ GenericNavigation convert_positions(NavigationTables tables, const fs::path& fol
   const std::string lack = what_lacks(lines);
   const auto poses = oriented_poses(lines, file, tables.heading_before, left_out, result);
   left_out.warn(result);
+  result.headings_by_way = std::none_of(lines.begin(), lines.end(),
+                                        [](const GnssLine& line) { return line.has_attitude; });
   if (poses.empty()) {
     result.warn(fmt::format("{} has no {}: no navigation, the map will not be georeferenced",
                             file.string(), lack));
