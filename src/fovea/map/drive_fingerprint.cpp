@@ -76,6 +76,14 @@ std::map<std::string, std::string> fingerprint_parts(const std::string& fingerpr
   return parts;
 }
 
+std::string without_imu(const std::string& fingerprint) {
+  std::vector<std::string> kept;
+  for (const auto& [name, hash] : fingerprint_parts(fingerprint)) {
+    if (name != kImu) kept.push_back(name + hash);
+  }
+  return fmt::format("{}", fmt::join(kept, " "));
+}
+
 std::optional<std::string> calibration_difference(const std::string& a, const std::string& b) {
   const std::map<std::string, std::string> parts_a = fingerprint_parts(a),
                                            parts_b = fingerprint_parts(b);

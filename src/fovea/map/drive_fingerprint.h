@@ -24,6 +24,9 @@ std::string calibration_fingerprint(const Calibration& calibration,
 /// The parts of a calibration's fingerprint: hash by "imu", "lidar_1" or the number of a camera.
 std::map<std::string, std::string> fingerprint_parts(const std::string& fingerprint);
 
+/// A calibration's fingerprint without the place of the IMU, which is that of navigation.
+std::string without_imu(const std::string& fingerprint);
+
 /// What differs between two calibrations, as in "camera 2, the place of the IMU"; nothing if
 /// they are equal.
 std::optional<std::string> calibration_difference(const std::string& a, const std::string& b);

@@ -39,13 +39,16 @@ DriveRecord drive_record(const FrameSource& source) {
   const auto first_stamp = std::find_if(stamps.begin(), stamps.end(),
                                         [](const auto& stamp) { return stamp.has_value(); });
   if (info.has_time_stamps && first_stamp != stamps.end()) drive.session = utc_day(*first_stamp);
-  if (info.origin) {
-    drive.origin = info.origin;
-    drive.datum = info.coordinates.datum.value_or(kWgs84);
-    drive.epoch_year = info.coordinates.epoch_year;
-    drive.height_type = info.coordinates.heights.value_or(HeightType::kEllipsoidal);
-  }
+  if (info.origin) set_origin(*info.origin, info.coordinates, drive);
   return drive;
+}
+
+void set_origin(const GeodeticPoint& origin, const CoordinateReference& coordinates,
+                DriveRecord& drive) {
+  drive.origin = origin;
+  drive.datum = coordinates.datum.value_or(kWgs84);
+  drive.epoch_year = coordinates.epoch_year;
+  drive.height_type = coordinates.heights.value_or(HeightType::kEllipsoidal);
 }
 
 std::vector<SensorRecord> sensor_records(const DriveInfo& drive) {

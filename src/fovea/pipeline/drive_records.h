@@ -13,6 +13,10 @@ namespace fovea {
 /// The drive from its source, before any correction of the calibration.
 DriveRecord drive_record(const FrameSource& source);
 
+/// States where `local` lies.
+void set_origin(const GeodeticPoint& origin, const CoordinateReference& coordinates,
+                DriveRecord& drive);
+
 /// The LiDARs of a drive (DriveInfo::lidars).
 std::vector<SensorRecord> sensor_records(const DriveInfo& drive);
 

@@ -61,6 +61,25 @@ void require_same_values(const MapMeta& before, const MapMeta& now, const std::s
                    "resume with the drive of the first run, or start a new map");
 }
 
+/// Takes the place of an earlier run, for one without navigation so far.
+void keep_origin(const MapMeta& before, const DriveRecord& earlier, MapMeta& meta,
+                 DriveRecord& record) {
+  for (const char* key : kOrigin) {
+    if (const auto found = before.find(key); found != before.end()) meta[key] = found->second;
+  }
+  record.origin = earlier.origin;
+  record.datum = earlier.datum;
+  record.epoch_year = earlier.epoch_year;
+  record.height_type = earlier.height_type;
+}
+
+/// A calibration without the place of the IMU, if only one of two states it: it comes with
+/// navigation, which a live drive may begin without.
+std::string comparable(const std::string& calibration, const std::string& other) {
+  const bool is_stated = fingerprint_parts(other).contains("imu");
+  return is_stated ? calibration : without_imu(calibration);
+}
+
 void require_same_drive(const DriveRecord& before, const DriveRecord& now,
                         const std::string& path) {
   std::string difference;
@@ -92,9 +111,19 @@ void require_same_live_run(const MapReader& map, MapMeta& meta, DriveRecord& rec
   for (const char* key : {meta_key::kFramesBegin, meta_key::kFramesEnd}) {
     if (const auto found = before.find(key); found != before.end()) meta[key] = found->second;
   }
-  require_same_values(before, meta, path.string());
-  record.stamps_fingerprint = drives[0].stamps_fingerprint;
-  require_same_drive(drives[0], record, path.string());
+  DriveRecord earlier = drives[0];
+  if (earlier.origin && !record.origin) keep_origin(before, earlier, meta, record);
+  MapMeta compared = meta;
+  if (!earlier.origin) {
+    for (const char* key : kOrigin) compared.erase(key);  // navigation may begin now
+  }
+  require_same_values(before, compared, path.string());
+  DriveRecord now = record;
+  record.stamps_fingerprint = now.stamps_fingerprint = earlier.stamps_fingerprint;
+  std::string& calibration = now.calibration_fingerprint.emplace(
+      comparable(record.calibration_fingerprint.value_or(""), *earlier.calibration_fingerprint));
+  earlier.calibration_fingerprint = comparable(*earlier.calibration_fingerprint, calibration);
+  require_same_drive(earlier, now, path.string());
 }
 
 void require_same_run(const MapReader& map, const MapMeta& meta, const DriveRecord& record,

@@ -21,7 +21,7 @@ void require_same_run(const MapReader& map, const MapMeta& meta, const DriveReco
                       const FrameSource& drive, const std::filesystem::path& path);
 
 /// The same of a map of a live drive, whose frames continue those of the map. Takes the first frame
-/// of the map into `meta` and `record`.
+/// of the map into `meta` and `record`, and its navigation if this run begins without.
 void require_same_live_run(const MapReader& map, MapMeta& meta, DriveRecord& record,
                            const std::filesystem::path& path);
 

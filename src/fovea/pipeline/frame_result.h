@@ -60,7 +60,8 @@ struct TrackingStats {
   bool has_restarted = false;  ///< the motion during the pause is unknown
   bool is_pose_unknown = false;
   bool has_navigation_jumped = false;
-  bool has_imu_dropped = false;  ///< from the next frame on the IMU is not used
+  bool has_navigation_begun = false;  ///< its first pose: it has moved the submaps before
+  bool has_imu_dropped = false;       ///< from the next frame on the IMU is not used
 
   /// Share of the registered points that have a counterpart; 1 where nothing was registered.
   double overlap() const;

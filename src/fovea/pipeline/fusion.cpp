@@ -107,9 +107,11 @@ void Fusion::track(FrameResult& frame) {
     frame.tracking.has_navigation_jumped = true;
     frame.note += (frame.note.empty() ? "" : "; ") + problem;
   }
+  const bool had_navigation = has_navigation_pose_;
   if (frame.tracking.has_restarted || is_due(*frame.stamp, T_odom_lidar)) {
     open_submap(frame, navigation_.measurement(submaps_.size(), *frame.stamp));
   }
+  frame.tracking.has_navigation_begun = has_navigation_pose_ && !had_navigation;
   frame.poses.submap = static_cast<int>(submaps_.size()) - 1;
   frame.poses.T_local_lidar = T_local_lidar(frame);
 }

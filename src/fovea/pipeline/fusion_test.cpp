@@ -208,6 +208,7 @@ TEST(Fusion, NavigationThatBeginsUnexpectedlyMovesTheSubmapsBeforeIt) {
     result.stamp = i * kTenth;
     result.poses.T_odom_lidar = odometry.T_odom_lidar;
     fusion.track(result);
+    EXPECT_EQ(result.tracking.has_navigation_begun, i == kBegin) << i;
   }
   for (int i = 0; i < kFrames; ++i) {
     const RigidMotion T = fusion.T_local_lidar(results[std::size_t(i)]);

@@ -189,6 +189,7 @@ void MapRun::map_next(TrackedFrame& tracked,
   if (frame != nullptr) views_.add(frame->scan);
   keyframes_.add(tracked);
   if (is_live_ && tracked.tracked) keep_target(*tracked.tracked);
+  if (is_live_) begin_navigation(tracked);
   FrameRecord record = map_tracked_frame(*mapper_, source_, drive_, tracked);
   check_calibration(tracked, record);
   check_clocks(tracked, record);

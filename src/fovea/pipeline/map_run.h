@@ -82,6 +82,8 @@ class MapRun {
   DriveRecord live_record() const;
   void resume_live(const MapReader& reader, const std::vector<FrameRecord>& records);
   void keep_target(TrackedScan& tracked);
+  /// States the origin of navigation that begins after the first frames.
+  void begin_navigation(const TrackedFrame& tracked);
   bool complete() const { return is_live_ || log_.size() == drive_.frame_count(); }
 
   const FrameSource& source_;
@@ -95,6 +97,7 @@ class MapRun {
   // Of a live drive.
   std::vector<std::optional<TimeNs>> live_stamps_;  // of all frames
   LiveState live_state_;
+  std::optional<NavigationOrigin> navigation_origin_;  // of navigation that begins later
   std::unique_ptr<LiveClocks> clocks_;
   std::atomic<int> frames_read_ = 0;  // counted by the reader's thread
   bool threaded_;

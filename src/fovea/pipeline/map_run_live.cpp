@@ -7,8 +7,10 @@
 #include "fovea/core/errors.h"
 #include "fovea/map/drive_fingerprint.h"
 #include "fovea/mapping/registration/local_map.h"
+#include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/map_run.h"
+#include "fovea/pipeline/run_meta.h"
 
 namespace fovea {
 namespace {
@@ -42,6 +44,17 @@ void MapRun::keep_target(TrackedScan& tracked) {
   if (tracked.target_lidar.empty()) return;
   live_state_.targets.push_back({tracked.result.index, std::move(tracked.target_lidar)});
   if (live_state_.targets.size() > kept) live_state_.targets.pop_front();
+}
+
+void MapRun::begin_navigation(const TrackedFrame& tracked) {
+  const auto* frame = std::get_if<Frame>(&tracked.read.result);
+  if (frame != nullptr && frame->motion.begins) navigation_origin_ = frame->motion.begins;
+  const bool begins = tracked.tracked && tracked.tracked->result.tracking.has_navigation_begun;
+  if (!begins || !navigation_origin_) return;
+  live_state_.world_origin = navigation_origin_->world;
+  if (!navigation_origin_->point) return;
+  set_origin(navigation_origin_->point, meta_);
+  set_origin(*navigation_origin_->point, navigation_origin_->coordinates, drive_records_.front());
 }
 
 void MapRun::check_clocks(const TrackedFrame& tracked, FrameRecord& record) {

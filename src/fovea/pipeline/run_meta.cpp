@@ -50,14 +50,17 @@ MapMeta meta_of_run(const DriveInfo& drive, const MapJob& job) {
   meta[meta_key::kCalibration] = job.calibrate ? "corrected" : "as given";
   meta[meta_key::kConfig] = to_toml(job.settings);
   meta[meta_key::kTileSize] = fmt::format("{}", job.settings.tile_size());
-  meta[meta_key::kGeoreferenced] = fmt::to_string(drive.origin ? 1 : 0);
-  if (drive.origin) {
-    meta[meta_key::kOriginLatitude] = fmt::format("{}", drive.origin->latitude);
-    meta[meta_key::kOriginLongitude] = fmt::format("{}", drive.origin->longitude);
-    meta[meta_key::kOriginHeight] = fmt::format("{}", drive.origin->altitude);
-  }
+  set_origin(drive.origin, meta);
   meta[meta_key::kNotes] = fmt::format("{}", fmt::join(drive.notes, "\n"));
   return meta;
+}
+
+void set_origin(const std::optional<GeodeticPoint>& origin, MapMeta& meta) {
+  meta[meta_key::kGeoreferenced] = fmt::to_string(origin ? 1 : 0);
+  if (!origin) return;
+  meta[meta_key::kOriginLatitude] = fmt::format("{}", origin->latitude);
+  meta[meta_key::kOriginLongitude] = fmt::format("{}", origin->longitude);
+  meta[meta_key::kOriginHeight] = fmt::format("{}", origin->altitude);
 }
 
 }  // namespace fovea
