@@ -162,10 +162,7 @@ void MapRun::map_frames(FrameStream& stream,
                        threaded_, job_.stop);
   try {
     while (std::optional<TrackedFrame> frame = frames.next()) {
-      if (frame->tracked) {
-        TrackedScan& tracked = *frame->tracked;
-        tracked.task.skips_texture = is_short_of_time(tracked.result.index);
-      }
+      if (frame->tracked) frame->tracked->task.skips_texture = skips_texture(*frame);
       map_next(*frame, progress);
       checkpoint_if_due();
     }

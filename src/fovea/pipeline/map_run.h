@@ -15,6 +15,7 @@
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/keyframe_recorder.h"
 #include "fovea/pipeline/live_clocks.h"
+#include "fovea/pipeline/live_load.h"
 #include "fovea/pipeline/live_state.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/view_check.h"
@@ -69,7 +70,7 @@ class MapRun {
   std::unique_ptr<IncrementalMapper> mapper_of_drive();
   TrackedScan track(const Frame& frame);  // runs in the tracker's thread
   /// Whether a frame is to add nothing to the map (FrameTask::skips_texture).
-  bool is_short_of_time(int frame) const;
+  bool skips_texture(const TrackedFrame& frame);
   void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
   void account_for(const FrameRecord& record, bool is_new);
   void checkpoint_if_due();
@@ -100,6 +101,7 @@ class MapRun {
   std::optional<NavigationOrigin> navigation_origin_;  // of navigation that begins later
   std::unique_ptr<LiveClocks> clocks_;
   std::atomic<int> frames_read_ = 0;  // counted by the reader's thread
+  LiveLoad load_;
   bool threaded_;
   Checkpointer file_;
   TileCache cache_;

@@ -13,13 +13,6 @@
 #include "fovea/pipeline/run_meta.h"
 
 namespace fovea {
-namespace {
-
-/// A frame adds nothing to the map if this number of later ones is read: scans would soon be
-/// dropped otherwise. At 10 Hz the map is then 0.3 s behind.
-constexpr int kMostBehind = 3;
-
-}  // namespace
 
 void MapRun::resume_live(const MapReader& reader, const std::vector<FrameRecord>& records) {
   const std::optional<TimeNs> first = source_.stamp(drive_.begin);
@@ -74,11 +67,12 @@ DriveRecord MapRun::live_record() const {
   return record;
 }
 
-bool MapRun::is_short_of_time(int frame) const {
+bool MapRun::skips_texture(const TrackedFrame& frame) {
   if (!is_live_ || job_.texture_every_frame || job_.settings.is_paper()) return false;
   // The first frames come all at once.
-  const int later = std::max(frame + 1, drive_.end);
-  return drive_.begin + frames_read_ - later >= kMostBehind;
+  const int later = std::max(frame.tracked->result.index + 1, drive_.end);
+  return load_.skips_next(drive_.begin + frames_read_ - later,
+                          milliseconds_since(frame.arrival()) / 1000);
 }
 
 }  // namespace fovea
