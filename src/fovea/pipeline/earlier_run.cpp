@@ -120,7 +120,7 @@ void require_same_live_run(const MapReader& map, MapMeta& meta, DriveRecord& rec
   require_same_values(before, compared, path.string());
   DriveRecord now = record;
   record.stamps_fingerprint = now.stamps_fingerprint = earlier.stamps_fingerprint;
-  std::string& calibration = now.calibration_fingerprint.emplace(
+  const std::string& calibration = now.calibration_fingerprint.emplace(
       comparable(record.calibration_fingerprint.value_or(""), *earlier.calibration_fingerprint));
   earlier.calibration_fingerprint = comparable(*earlier.calibration_fingerprint, calibration);
   require_same_drive(earlier, now, path.string());

@@ -123,6 +123,28 @@ TEST_F(MapLiveNavigation, AFirstFixPlacesTheMap) {
   }
 }
 
+// Poses in a world without coordinates, whose origin a later run has to take.
+TEST_F(MapLiveNavigation, LaterPosesPlaceTheMapInTheirWorld) {
+  const auto by_poses = [](int begin, int end) {
+    test::LiveData data = town_data(begin, end, kFrames);
+    for (int i = std::max(begin, kBegin); i < end; ++i) {
+      data.poses.push_back({data.scans[std::size_t(i - begin)].stamp, T_enu_lidar(i)});
+    }
+    return data;
+  };
+  map(by_poses(0, 20), all_data());
+  resume(by_poses(20, kFrames));
+  const MapReader reader(path_);
+  EXPECT_FALSE(map_origin(reader.meta()));
+  const RigidMotion T_world_local(
+      Eigen::Translation3d(live_state(reader).value().world_origin.value()));
+  for (const FrameRecord& frame : reader.frames()) {
+    const RigidMotion apart =
+        T_enu_lidar(frame.index).inverse() * T_world_local * frame.T_local_lidar;
+    EXPECT_LT(apart.translation().norm(), 0.15) << frame.index;
+  }
+}
+
 TEST_F(MapLiveNavigation, WithoutAFixTheMapHasNoPlace) {
   map(town_data(0, 14, kFrames), all_data());
   EXPECT_FALSE(map_origin(MapReader(path_).meta()));

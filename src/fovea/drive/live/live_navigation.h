@@ -17,6 +17,7 @@ namespace fovea {
 /// Converts records as the tables of a drive's folder are converted. Each pose comes once.
 ///
 /// Navigation begins with the first scans, or with a later one for which records can be used.
+/// Over ten members: records of both kinds, the state before and since the beginning.
 class LiveNavigation {
  public:
   using Inertia = RecordWindow<RecordedInertia>;
