@@ -196,6 +196,14 @@ std::vector<std::string> with_corrected_drives(const std::vector<std::string>& i
   return all;
 }
 
+void require_outside(const OutputPath& output, const OutputFolderPath& folder) {
+  if (folder.path.empty() || folder.use != FolderUse::kReplace) return;
+  if (!lies_in(output.path, folder.path)) return;
+  throw OutputError("two outputs of the command are at one place",
+                    fmt::format("{} and the folder {}", output.path, folder.path),
+                    "give them different places");
+}
+
 void check_folder(const OutputFolderPath& folder, const std::vector<std::string>& inputs) {
   if (folder.path.empty()) return;
   std::error_code ignored;
@@ -228,6 +236,7 @@ void check_files(const CommandFiles& files) {
   }
   check_folder(files.folder, inputs);
   for (const OutputPath& output : outputs) {
+    require_outside(output, files.folder);
     check_existing(output);
     check_partial(output);
     check_ending(output);

@@ -34,7 +34,7 @@ struct CommandFiles {
 /// Each command calls this once, before it reads or writes anything. OutputError if an output is an
 /// input, a file of an input folder or another output, under whatever name; if an output exists and
 /// is a file of another kind or may not be replaced; if a name has the ending of another format; or
-/// if an output folder lies in an input or would replace one.
+/// if an output folder lies in an input, or would replace one or hold another output.
 void check_files(const CommandFiles& files);
 
 }  // namespace fovea

@@ -200,4 +200,15 @@ TEST_F(CommandFilesTest, NoOutputFolderLiesInAnInputOrReplacesOne) {
   EXPECT_EQ(folder("out"), kAccepted);
 }
 
+TEST_F(CommandFilesTest, NoOutputLiesInAFolderThatIsReplaced) {
+  const auto both = [&](const std::string& output) {
+    return answer(
+        {{}, {{path(output), ContentKind::kReport, true}}, {path("out"), FolderUse::kReplace}});
+  };
+  for (const char* inside : {"out", "./out", "out/report.json"}) {
+    EXPECT_THAT(both(inside), HasSubstr("at one place")) << inside;
+  }
+  EXPECT_EQ(both("out.json"), kAccepted);
+}
+
 }  // namespace fovea::command_files_test
