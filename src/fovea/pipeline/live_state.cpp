@@ -109,16 +109,20 @@ CheckpointRecord checkpoint_of(const LiveState& state, int last_frame) {
   return record;
 }
 
-std::optional<LiveState> live_state(const MapReader& map) {
-  const std::optional<CheckpointRecord> record = map.checkpoint(kLiveState);
-  if (!record) return std::nullopt;
+LiveState live_state(const CheckpointRecord& record) {
   try {
-    return state_of(*record);
+    return state_of(record);
   } catch (const json::exception& error) {
     throw InputError("the state of a live map cannot be read", error.what(), kRestoreMap);
   } catch (const std::invalid_argument& error) {
     throw InputError("the state of a live map cannot be read", error.what(), kRestoreMap);
   }
+}
+
+std::optional<LiveState> live_state(const MapReader& map) {
+  const std::optional<CheckpointRecord> record = map.checkpoint(kLiveState);
+  if (!record) return std::nullopt;
+  return live_state(*record);
 }
 
 void continue_map(const std::filesystem::path& map, LiveOptions& options) {

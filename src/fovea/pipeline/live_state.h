@@ -29,6 +29,8 @@ struct LiveState {
 CheckpointRecord checkpoint_of(const LiveState& state, int last_frame);
 inline constexpr const char* kLiveState = "live";
 
+/// InputError if the record is damaged.
+LiveState live_state(const CheckpointRecord& record);
 /// The state in a map; nothing if the map is not of a live drive. InputError if it is damaged.
 std::optional<LiveState> live_state(const MapReader& map);
 
