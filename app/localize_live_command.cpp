@@ -23,6 +23,7 @@ namespace {
 LiveTopicsOptions options_of(const LocalizeArguments& arguments, const LiveArguments& live) {
   LiveTopicsOptions options = topics_options(arguments.drive, live);
   options.live.drive.use_images = false;
+  options.live.max_scans = 8;  // the pose of an older scan comes too late to be of use
   return options;
 }
 

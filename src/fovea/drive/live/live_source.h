@@ -50,7 +50,7 @@ struct LiveOptions {
   double longest_beginning = 5;
   /// Whether begin() waits for poses or positions, too, if none has come with the first scans.
   bool expects_navigation = false;
-  std::size_t max_scans = 8;  ///< that wait to become frames, for each LiDAR
+  std::size_t max_scans = 24;  ///< that wait to become frames, for each LiDAR
   /// A full queue makes add_scan() wait. Otherwise the oldest scan is dropped, and counted.
   bool waits = false;
   /// With `waits`: all data come from one thread. While it waits for room nothing else comes, so a

@@ -157,6 +157,7 @@ TEST_F(LiveSourceTest, ACameraMayBeginAfterTheLidar) {
   });
   LiveOptions options = all_data();
   options.waits = false;  // the oldest scans are dropped while the beginning waits
+  options.max_scans = 8;
   LiveSource source(toml, options);
   for (const auto& [time, call] : data.calls()) {
     if (time < kLiveStart + 30 * kLiveStep) call(source);
