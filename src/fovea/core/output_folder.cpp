@@ -103,9 +103,9 @@ fs::path OutputFolder::check_target() const {
 }
 
 void OutputFolder::write(const fs::path& relative, std::string_view bytes) const {
+  const fs::path file = partial_ / relative;
   const int fd = [&] {
     const OutputStep step;  // the folder must not be made anew after a signal removed it
-    const fs::path file = partial_ / relative;
     std::error_code error;
     fs::create_directories(file.parent_path(), error);
     if (error) throw_output_error(target_, error.value());
@@ -118,6 +118,7 @@ void OutputFolder::write(const fs::path& relative, std::string_view bytes) const
     if (written < 0) {
       const int reason = errno;
       ::close(fd);
+      ::unlink(file.c_str());  // half a file; its room may be needed
       throw_output_error(target_, reason);
     }
     bytes.remove_prefix(static_cast<std::size_t>(written));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <utility>
 
 #include "fovea/core/errors.h"
@@ -103,8 +104,14 @@ void LiveRecorder::set_stamp_delay(const std::string& camera, double delay) {
 void LiveRecorder::finish(RawMotion motion) {
   static_cast<void>(queue_.push({std::nullopt, std::move(motion)}));
   queue_.close();
-  result_.get();
-  writer_.finish(drive_toml_);
+  std::exception_ptr failure;
+  try {
+    result_.get();
+  } catch (const OutputError&) {
+    failure = std::current_exception();
+  }
+  writer_.finish(drive_toml_);  // the frames before it are a drive
+  if (failure) std::rethrow_exception(failure);
 }
 
 void LiveRecorder::run() {

@@ -36,7 +36,8 @@ struct RawMotion {
   }
 };
 
-/// One thread calls it, another one writes. The first OutputError ends the recording.
+/// One thread calls it, another one writes. The first OutputError ends the recording; the frames
+/// before it stay.
 class LiveRecorder {
  public:
   /// @param drive_toml  is written as it is: its folders must be the default ones
@@ -53,8 +54,8 @@ class LiveRecorder {
   void add(RawFrame frame, RawMotion motion);
   /// States the delay of a camera in drive.toml, since a median of the recording may differ.
   void set_stamp_delay(const std::string& camera, double delay);
-  /// Writes what has come, and gives the drive its name. OutputError if that, or a frame before,
-  /// could not be written.
+  /// Writes what has come, and gives the drive its name. OutputError if that could not be written,
+  /// or if the drive ends early since a frame could not.
   void finish(RawMotion motion);
 
  private:

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "../../../../tests/file_size_limit.h"
 #include "fovea/core/errors.h"
 #include "fovea/drive/live/test_live_run.h"
 
@@ -99,6 +100,16 @@ TEST_F(LiveRecording, IsNotThereUnlessItIsFinished) {
   }
   EXPECT_FALSE(std::filesystem::exists(root_));
   EXPECT_FALSE(std::filesystem::exists(root_.string() + ".partial"));
+}
+
+TEST_F(LiveRecording, KeepsTheFramesBeforeTheDiskIsFull) {
+  LiveData data = live_car(20);
+  const std::string toml = data.write(folder_ / "drive");
+  PointCloud& large = data.scans[14].points;
+  for (int i = 0; i < 8; ++i) large.append(PointCloud(large));
+  const FileSizeLimit limit(large.size() * 8);
+  EXPECT_THROW(record(data, toml), OutputError);
+  EXPECT_EQ(open_drive(root_, all_data().drive)->info().frame_count(), 14u);
 }
 
 TEST_F(LiveRecording, RefusesWhatItCannotWrite) {
