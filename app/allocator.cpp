@@ -7,7 +7,7 @@
 /// frees serves all, cut as it is needed; blocks up to 64 kB stay with their thread; what is freed
 /// is kept until the map's keeper gives it back.
 extern "C" {
-const char* malloc_conf =
+__attribute__((visibility("default"))) const char* malloc_conf =
     "thp:always,metadata_thp:auto,narenas:1,oversize_threshold:0,lg_extent_max_active_fit:16,"
     "lg_tcache_max:16,dirty_decay_ms:-1,muzzy_decay_ms:-1";
 }

@@ -8,10 +8,10 @@
 #include "app/drive_arguments.h"
 #include "app/drive_check_text.h"
 #include "app/print.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/writers/png_encode.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 namespace {

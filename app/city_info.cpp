@@ -11,7 +11,7 @@
 #include "app/print.h"
 #include "fovea/city/city.h"
 #include "fovea/city/json_values.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea::app {

@@ -8,8 +8,8 @@
 #include "app/bridge_status.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/bridge/bridge_recording.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 namespace {

@@ -15,10 +15,10 @@
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/topic_arguments.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/bridge/bridge_address.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/recordings/convert_bags.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 namespace {

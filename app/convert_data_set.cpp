@@ -6,9 +6,9 @@
 
 #include "app/print.h"
 #include "app/progress_bar.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/data_sets/data_set.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <CLI/Error.hpp>
 #include <charconv>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 namespace {

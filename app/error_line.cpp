@@ -9,9 +9,9 @@
 #include <new>
 #include <system_error>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/machine_error.h"
 #include "fovea/core/path_remedy.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 namespace {

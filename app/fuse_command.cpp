@@ -12,9 +12,9 @@
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/tile_overview.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
+#include "fovea/errors.h"
 #include "fovea/merging/poses_file.h"
 #include "fovea/merging/tile_fusion.h"
 

@@ -18,7 +18,7 @@
 #include "app/sensor_text.h"
 #include "fovea/city/city.h"
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/meta_keys.h"

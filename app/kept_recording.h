@@ -3,8 +3,8 @@
 
 #include <exception>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/live/live_source.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 

@@ -9,7 +9,7 @@
 
 #include "app/map_arguments.h"
 #include "app/print.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/drive_in_city.h"
 #include "fovea/map/map_meta.h"
 

@@ -13,9 +13,9 @@
 #include "app/number_checks.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/bridge/bridge_address.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/localization/localize_drive.h"
 

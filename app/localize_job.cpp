@@ -8,7 +8,7 @@
 
 #include "app/map_arguments.h"
 #include "app/print.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/localization/pose_table.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/pipeline/summary_json.h"

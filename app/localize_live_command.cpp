@@ -11,9 +11,9 @@
 #include "app/reports.h"
 #include "app/robot_reader.h"
 #include "app/robot_run.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/bridge/pose_publisher.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/localization/localize_live.h"
 

@@ -14,11 +14,11 @@
 #include "app/commands.h"
 #include "app/error_line.h"
 #include "app/standard_output.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/printable.h"
 #include "fovea/core/process_memory.h"
 #include "fovea/core/unfinished_output.h"
-#include "fovea/core/version.h"
+#include "fovea/errors.h"
+#include "fovea/platform.h"
 
 namespace {
 

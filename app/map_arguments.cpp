@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/print.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 

@@ -1,8 +1,8 @@
 #include "app/map_job.h"
 
 #include "app/print.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/machine_error.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/config.h"
 

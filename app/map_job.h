@@ -7,8 +7,8 @@
 
 #include "app/drive_arguments.h"
 #include "app/session.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/command_files.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/map_drive.h"
 
 namespace fovea::app {

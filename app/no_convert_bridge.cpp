@@ -1,6 +1,6 @@
 // A build without FOVEA_WITH_BRIDGE.
 #include "app/convert_bridge.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 namespace {

@@ -29,7 +29,7 @@ ProgressBar::~ProgressBar() {
   if (drawn_) fmt::print(stderr, "\n");
 }
 
-void ProgressBar::operator()(const MapProgress& progress) {
+void ProgressBar::operator()(const RunProgress& progress) {
   draw(progress.done, progress.total,
        fmt::format("{:.2f} M points, {} MB", double(progress.points) * 1e-6,
                    resident_memory() >> 20));

@@ -15,7 +15,7 @@ class ProgressBar {
   /// @param unit   what is counted
   explicit ProgressBar(bool quiet, std::string_view unit = "frames");
   ~ProgressBar();  ///< ends the line
-  void operator()(const MapProgress& progress);
+  void operator()(const RunProgress& progress);
   /// @param detail  what else to tell
   void draw(int done, int total, std::string_view detail = "");
 

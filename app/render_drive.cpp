@@ -14,10 +14,10 @@
 #include "app/map_arguments.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/kitti/kitti_calibration.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/rendering/render_drive.h"
 

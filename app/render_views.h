@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "fovea/core/point_cloud.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea::app {
 

@@ -12,9 +12,9 @@
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
+#include "fovea/errors.h"
 #include "tools/paper/reproduce.h"
 #include "tools/paper/rows.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/summary_json.h"
 
 namespace fovea::app {

@@ -11,9 +11,9 @@
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/simulate.h"
 #include "fovea/simulation/simulation_config.h"
 

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <system_error>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/machine_error.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 

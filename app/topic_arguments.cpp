@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/plain_name.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 

@@ -8,13 +8,13 @@
 #include "app/commands.h"
 #include "app/number_checks.h"
 #include "app/print.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/kitti/kitti_calibration.h"
 #include "fovea/drive/scans/lidar_scan.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/map/point_files/cloud_ply.h"
-#include "fovea/mapping/upsample.h"
+#include "fovea/upsample.h"
 
 namespace fovea::app {
 namespace {

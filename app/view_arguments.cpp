@@ -8,7 +8,7 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::app {
 

@@ -15,7 +15,7 @@
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
 #include "fovea/city/city.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/city/tile_overview.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/stored_calibration.h"

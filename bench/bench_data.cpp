@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <variant>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/simulate.h"
 #include "tests/temporary_folder.h"
 #include "tools/paper/upsampling_times.h"

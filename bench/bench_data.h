@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/camera.h"
 #include "fovea/drive/frame_source.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea::bench {
 

@@ -13,8 +13,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/random.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 
 namespace {

@@ -16,8 +16,8 @@
 #include "fovea/core/random.h"
 #include "fovea/drive/images/png_decode.h"
 #include "fovea/mapping/image_mesh.h"
-#include "fovea/mapping/surface_samples.h"
-#include "fovea/mapping/upsample.h"
+#include "fovea/surface_samples.h"
+#include "fovea/upsample.h"
 
 namespace fovea::bench {
 namespace {

@@ -2,11 +2,11 @@
 
 #include "bench/duel.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/foveal_query.h"
 #include "fovea/pipeline/mapper.h"
 #include "fovea/pipeline/visible_map.h"
+#include "fovea/upsample.h"
 
 namespace fovea::bench {
 namespace {

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/kitti/oxts.h"
 #include "fovea/drive/time_stamps.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/simulation/drive_texts.h"
 

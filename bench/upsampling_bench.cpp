@@ -17,11 +17,11 @@
 
 #include "app/drive_arguments.h"
 #include "bench/mls_peer.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/path_name.h"
-#include "fovea/mapping/upsample.h"
+#include "fovea/errors.h"
+#include "fovea/upsample.h"
 #include "tools/paper/upsampling_times.h"
 
 namespace fovea::bench {

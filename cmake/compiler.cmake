@@ -5,6 +5,9 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 # One flag for libraries and programs alike, so that both share one precompiled header. Without
 # semantic interposition the compiler may inline what a shared library could otherwise replace.
 add_compile_options(-fPIC -fno-semantic-interposition)
+# Of the shared library only what the public headers mark with FOVEA_API is visible.
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   # Products are added up in one instruction wherever that can be, as GCC does.
   add_compile_options(-ffp-contract=fast)

@@ -97,13 +97,9 @@ function(fovea_module name)
   list(REMOVE_ITEM sources ${tests})
 
   add_library(fovea_${name} STATIC ${sources})
-  add_library(fovea::${name} ALIAS fovea_${name})
-  set_target_properties(fovea_${name} PROPERTIES EXPORT_NAME ${name})
-  target_include_directories(fovea_${name} PUBLIC
-      $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
+  target_include_directories(fovea_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   list(TRANSFORM ARG_DEPENDS PREPEND fovea_ OUTPUT_VARIABLE modules)
-  target_link_libraries(fovea_${name} PUBLIC ${modules} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE}
-                        $<BUILD_INTERFACE:fovea_compile_options>)
+  target_link_libraries(fovea_${name} PUBLIC ${modules} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} fovea_compile_options)
   target_compile_definitions(fovea_${name} PUBLIC ${FOVEA_EIGEN_ALIGNMENT})
   target_compile_features(fovea_${name} PUBLIC cxx_std_20)
   if(ARG_TOGETHER)

@@ -1,40 +1,44 @@
 // Maps while sensors measure: live_mapping DRIVE MAP.fovea. A drive stands for the robot.
-#include <fovea/core/read_file.h>
-#include <fovea/pipeline/config.h>
-#include <fovea/pipeline/map_live.h>
+#include <fovea/fovea.h>
 
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 #include <thread>
+
 int main(int, char** arguments) {
   const std::filesystem::path folder = arguments[1];
-  const auto robot = fovea::open_drive(folder, {});  // yours: the sensors of a robot
-  const fovea::DriveInfo& info = robot->info();
-  fovea::LiveOptions options;
+  const fovea::Drive robot(folder);  // yours: the sensors of a robot
+  std::ostringstream drive_toml;
+  drive_toml << std::ifstream(folder / "drive.toml").rdbuf();
+
+  fovea::LiveMapperOptions options;
   options.expects_navigation = true;
-  fovea::LiveSource source(fovea::read_text(folder / "drive.toml"), options);
-  const auto start = std::chrono::steady_clock::now() - std::chrono::nanoseconds(*robot->stamp(0));
+  options.on_pose = [](const fovea::LivePose& pose) {
+    std::printf("%d %s\n", pose.index, pose.state.c_str());
+  };
+  fovea::LiveMapper mapper(drive_toml.str(), arguments[2], options);
+
+  const auto now = std::chrono::steady_clock::now();
+  const auto start = now - std::chrono::nanoseconds(robot.load(0).stamp());
   const auto wait_until = [&](fovea::TimeNs stamp) {
     std::this_thread::sleep_until(start + std::chrono::nanoseconds(stamp));
   };
   std::jthread poses([&] {
-    for (const fovea::StampedPose& pose : info.navigation.value().poses()) {
+    for (const fovea::StampedPose& pose : robot.navigation().value().poses()) {
       wait_until(pose.time);
-      source.add_pose({pose.time, pose.T_local_body * info.calibration.T_imu_lidar->inverse()});
+      mapper.add_pose(pose.time, pose.T_local_body * robot.T_body_lidar()->inverse());
     }
   });
   std::jthread frames([&] {
-    for (const int index : info.frame_indices()) {
-      const fovea::Frame frame = std::get<fovea::Frame>(robot->load(index));
-      wait_until(frame.stamp);
-      source.add_scan({"", frame.stamp, frame.scan});
-      source.add_image({"camera_2", frame.stamp, frame.images.front()});
+    for (const int index : robot.frames()) {
+      const fovea::DriveFrame frame = robot.load(index);
+      wait_until(frame.stamp());
+      mapper.add_scan(frame.stamp(), frame.scan());
+      mapper.add_image("camera_2", frame.stamp(), frame.images().front());
     }
-    poses.join();
-    source.close();
   });
-  fovea::MapJob job;
-  job.output = arguments[2];
-  job.settings = fovea::load_preset("default");
-  job.on_tracked = [](const auto& frame) { std::printf("%d\n", frame.index); };
-  std::printf("%zu points\n", fovea::map_live(source, job, {}).points);
+  poses.join();
+  frames.join();
+  std::printf("%zu points\n", mapper.close().points);
 }

@@ -1,7 +1,7 @@
 // Messages of a Foxglove bridge. The first byte says whether one is text.
-#include "fovea/core/errors.h"
 #include "fovea/drive/bridge/bridge_address.h"
 #include "fovea/drive/bridge/bridge_messages.h"
+#include "fovea/errors.h"
 #include "fuzz_input.h"
 
 using namespace fovea;

@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 files=("$@")
-[[ ${#files[@]} -gt 0 ]] || mapfile -t files < <(git ls-files {src,app,tools,python}/'*'{.h,.cpp,.py} | grep -v '_test\.cpp$')
+[[ ${#files[@]} -gt 0 ]] || mapfile -t files < <(git ls-files {include,src,app,tools,python}/'*'{.h,.cpp,.py} | grep -v '_test\.cpp$')
 awk -v max_file=300 -v max_function=60 -v all_functions=$# '
   function report(text) { print FILENAME ":" text; failed = 1 }
   FNR == 1 { split("", start); has_reason = 0 }

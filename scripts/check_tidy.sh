@@ -25,15 +25,16 @@ done
 product_sources() { git ls-files 'src/*.cpp' 'app/*.cpp' 'tools/*.cpp' 'python/*.cpp' | grep -v '_test\.cpp$'; }
 
 source_of_header() { # HEADER
-  local source=${1%.h}.cpp
+  local source=${1%.h}.cpp included=${1#src/}
+  included=${included#include/}
   if [[ ! -e $source ]]; then
-    source=$(product_sources | xargs grep -lF "#include \"${1#src/}\"" | head -n 1 || true)
+    source=$(product_sources | xargs grep -lF "#include \"$included\"" | head -n 1 || true)
   fi
   [[ -z $source ]] || echo "$source"
 }
 
 changed_sources() { # REF
-  git diff --name-only --diff-filter=d "$1" -- src app tools python | while read -r file; do
+  git diff --name-only --diff-filter=d "$1" -- include src app tools python | while read -r file; do
     case $file in
       *_test.cpp | *test_*.h) ;;
       *.cpp) echo "$file" ;;

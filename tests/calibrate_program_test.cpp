@@ -150,7 +150,7 @@ TEST_F(Calibrate, ResumesUnderTheSameCorrection) {
     DriveOptions options;
     options.cameras = {2};
     const auto source = open_drive(drive("faulty"), options);
-    const MapSummary summary = map_drive(*source, job, [&](const MapProgress& progress) {
+    const MapSummary summary = map_drive(*source, job, [&](const RunProgress& progress) {
       if (progress.done == 7) stop.request_stop();
     });
     ASSERT_TRUE(summary.interrupted);

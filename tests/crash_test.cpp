@@ -9,8 +9,8 @@
 #include <chrono>
 #include <thread>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/random.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 #include "tests/kitti_writer.h"
 #include "tests/program.h"

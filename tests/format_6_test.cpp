@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/map_store.h"
 #include "tests/program.h"

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "fovea/core/cloud_columns.h"
 #include "fovea/map/map_store.h"
 #include "fovea/simulation/simulate.h"
 #include "tests/program.h"

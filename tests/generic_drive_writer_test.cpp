@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 #include "tests/temporary_folder.h"
 
 namespace fovea::generic_drive_writer_test {

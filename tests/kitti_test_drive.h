@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 #include "temporary_folder.h"
 
 namespace fovea::test {

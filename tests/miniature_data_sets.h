@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/image.h"
 #include "fovea/drive/writers/png_encode.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -131,7 +131,7 @@ TEST_F(MissingImages, AResumedRunGivesTheSameMap) {
     for (bool complete = false; !complete; job.resume = true) {
       std::stop_source stop;
       job.stop = stop.get_token();
-      complete = !map_drive(*source, job, [&](const MapProgress& progress) {
+      complete = !map_drive(*source, job, [&](const RunProgress& progress) {
                     if (stops.contains(progress.done)) stop.request_stop();
                   }).interrupted;
     }

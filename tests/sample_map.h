@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "fovea/core/cloud_columns.h"
 #include "fovea/core/random.h"
 #include "fovea/map/map_store.h"
 

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "fovea/camera.h"
 #include "fovea/drive/drive_truth.h"
-#include "fovea/geometry/camera.h"
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea::test {

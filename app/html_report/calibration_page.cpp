@@ -10,7 +10,7 @@
 #include "app/html_report/markup.h"
 #include "app/html_report/page_layout.h"
 #include "fovea/core/angle.h"
-#include "fovea/core/version.h"
+#include "fovea/platform.h"
 
 namespace fovea::app {
 namespace {

@@ -8,13 +8,13 @@
 #include "app/html_report/markup.h"
 #include "app/html_report/viewpoint.h"
 #include "fovea/core/angle.h"
+#include "fovea/foveal_region.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/mapping/foveal_region.h"
-#include "fovea/mapping/surface_samples.h"
-#include "fovea/mapping/texture.h"
-#include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/rendering/splat.h"
+#include "fovea/surface_samples.h"
+#include "fovea/texture.h"
+#include "fovea/upsample.h"
 
 namespace fovea::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea::app {
 

@@ -10,7 +10,7 @@
 
 #include "app/html_report/assets.h"
 #include "app/html_report/markup.h"
-#include "fovea/core/version.h"
+#include "fovea/platform.h"
 
 namespace fovea::app {
 namespace {

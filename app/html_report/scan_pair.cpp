@@ -13,11 +13,11 @@
 #include "fovea/evaluation/scan_matching.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/mapping/ground.h"
+#include "fovea/ground.h"
 #include "fovea/mapping/registration/registration.h"
-#include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/motion_model.h"
 #include "fovea/pipeline/registration_check.h"
+#include "fovea/upsample.h"
 
 namespace fovea::app {
 namespace {

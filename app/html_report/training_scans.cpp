@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/html_report/markup.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 

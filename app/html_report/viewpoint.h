@@ -1,7 +1,7 @@
 // Places around the vehicle to look at a map from.
 #pragma once
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 
 namespace fovea::app {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea::python {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 #include "python/bindings/arrays.h"
 
 namespace fovea::python {

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/columns.h"
 #include "python/bindings/path_object.h"

@@ -106,12 +106,12 @@ class PythonDriveWriter {
   bool is_open() const { return writer_.has_value(); }
 
  private:
-  DriveWriter& opened() {
+  AdapterWriter& opened() {
     if (!writer_) throw std::logic_error("the drive is closed");
     return *writer_;
   }
 
-  std::optional<DriveWriter> writer_;
+  std::optional<AdapterWriter> writer_;
 };
 
 }  // namespace

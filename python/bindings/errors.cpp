@@ -1,5 +1,5 @@
 // Fovea's errors as Python's exceptions of the same names.
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 #include "python/bindings/bindings.h"
 

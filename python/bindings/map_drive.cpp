@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/summary_json.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/drive.h"
@@ -20,7 +20,7 @@ namespace fovea::python {
 namespace py = pybind11;
 namespace {
 
-/// A MapProgress that a callback may keep.
+/// A RunProgress that a callback may keep.
 struct Progress {
   int done = 0, total = 0;
   std::size_t points = 0;
@@ -45,7 +45,7 @@ py::object map_drive(const std::filesystem::path& drive, const std::filesystem::
   job.force = force;
   RunWatch watch;
   job.stop = watch.token();
-  const auto progress = [&](const MapProgress& now) {
+  const auto progress = [&](const RunProgress& now) {
     watch.call([&] {
       if (callback.is_none()) return;
       callback(Progress{now.done, now.total, now.points, *now.latest});

@@ -1,7 +1,7 @@
 // fovea._fovea: the compiled part of `import fovea`.
 #include <pybind11/numpy.h>
 
-#include "fovea/core/version.h"
+#include "fovea/platform.h"
 #include "python/bindings/bindings.h"
 
 PYBIND11_MODULE(_fovea, module) {

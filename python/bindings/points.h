@@ -6,9 +6,9 @@
 #include <tuple>
 #include <utility>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/map/color_display.h"
 #include "fovea/map/tile_map.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea::python {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "fovea/core/image.h"
-#include "fovea/core/point_cloud.h"
+#include "fovea/image.h"
+#include "fovea/point_cloud.h"
 #include "python/bindings/arrays.h"
 
 namespace fovea::python {

@@ -1,9 +1,6 @@
-// Uses the installed library: headers, archives and their dependencies are there. The compiler and
-// its flags differ from the library's, so objects of Eigen types go both ways.
-#include <fovea/core/version.h>
-#include <fovea/geometry/trajectory.h>
-#include <fovea/mapping/registration/registration.h>
-#include <fovea/pipeline/config.h>
+// Uses the installed library: its headers, the shared library, and objects that go both ways. The
+// compiler and its flags differ from the library's.
+#include <fovea/fovea.h>
 
 #include <cstdio>
 
@@ -11,20 +8,16 @@ namespace {
 
 /// Registers two clouds.
 bool registers() {
-  const fovea::MapSettings settings = fovea::load_preset("default");
-  std::vector<Eigen::Vector3f> points;
+  fovea::PointCloud cloud;
   for (int i = 0; i < 20; ++i) {
     for (int j = 0; j < 20; ++j) {
       const float a = 0.2f * float(i), b = 0.2f * float(j);
-      points.insert(points.end(), {{a, b, 0}, {a, 0, b}, {0, a, b}});
+      cloud.position.insert(cloud.position.end(), {{a, b, 0}, {a, 0, b}, {0, a, b}});
     }
   }
-  const auto cloud = fovea::prepare_cloud(points, settings.mapper().refinement.registration);
-  const fovea::PointIndex index(cloud.points);
   fovea::RigidMotion guess = fovea::RigidMotion::Identity();
   guess.translation() = Eigen::Vector3d(0.05, -0.03, 0.02);
-  const auto result =
-      fovea::register_clouds(cloud, index, cloud, guess, settings.mapper().refinement.registration);
+  const fovea::RegistrationResult result = fovea::register_scans(cloud, cloud, guess);
   const double error = result.T_target_source.translation().norm();
   std::printf("registration off by %g m\n", error);
   return result.converged && error < 0.02 && result.pairs > 0 && result.information(5, 5) > 0;
@@ -49,6 +42,17 @@ bool interpolates() {
          last == Eigen::Vector3d(99, 198, 3);
 }
 
+/// Errors cross the library's border with their types.
+bool throws() {
+  try {
+    const fovea::Drive drive("there is no such folder");
+  } catch (const fovea::InputError& error) {
+    std::printf("%s\n", error.what());
+    return !error.remedy().empty();
+  }
+  return false;
+}
+
 /// A matrix of dynamic size is freed by whichever copy of Eigen's function the linker kept.
 bool solves() {
   Eigen::MatrixXd equations = Eigen::MatrixXd::Identity(200, 200) * 2;
@@ -60,7 +64,7 @@ bool solves() {
 
 int main() {
   std::printf("fovea %s\n", fovea::version());
-  const bool passed = registers() && interpolates() && solves();
+  const bool passed = registers() && interpolates() && throws() && solves();
   std::puts(passed ? "passed" : "failed");
   return passed ? 0 : 1;
 }

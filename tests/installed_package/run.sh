@@ -19,6 +19,22 @@ for compiler in g++ "$clang"; do
 done
 "$work/prefix/bin/fovea" --version
 
+# Only the public headers, and each by itself.
+[[ $(find "$work/prefix/include" -type f | wc -l) -le 26 ]]
+alignment="-DEIGEN_MAX_ALIGN_BYTES=32 -DEIGEN_MAX_STATIC_ALIGN_BYTES=32"
+for header in "$work"/prefix/include/fovea/*.h; do
+  # shellcheck disable=SC2086
+  g++ -std=c++20 -fsyntax-only -Wall -Wextra -Werror $alignment -I"$work/prefix/include" -isystem /usr/include/eigen3 \
+    -x c++ - <<<"#include <fovea/$(basename "$header")>"
+done
+
+# pkg-config gives the same flags.
+export PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig:$work/prefix/lib/x86_64-linux-gnu/pkgconfig
+# shellcheck disable=SC2046
+g++ -std=c++20 "$here/main.cpp" $(pkg-config --cflags --libs fovea) -Wl,-rpath,"$(pkg-config --variable=libdir fovea)" \
+  -o "$work/by_pkg_config"
+"$work/by_pkg_config"
+
 # Without the package's definitions the headers name the remedy.
 if errors=$(g++ -std=c++20 -fsyntax-only -I"$work/prefix/include" -I/usr/include/eigen3 "$here/main.cpp" 2>&1); then
   echo "the headers accept another alignment of Eigen's objects" >&2

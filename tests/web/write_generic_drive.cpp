@@ -7,8 +7,8 @@
 #include <exception>
 #include <string>
 
+#include "fovea/deskew.h"
 #include "fovea/drive/frame_source.h"
-#include "fovea/drive/motion_compensation.h"
 #include "fovea/drive/writers/drive_writer.h"
 
 namespace fovea {
@@ -33,7 +33,7 @@ void write(const std::string& drive_folder, const std::string& output, int frame
   const DriveInfo& info = drive->info();
   DriveWriterOptions writing;
   writing.sweep_compensated = info.sweep_compensated;
-  DriveWriter writer(output, cameras_of(info), writing);
+  AdapterWriter writer(output, cameras_of(info), writing);
   for (const int index : info.frame_indices()) {
     LoadedFrame loaded = drive->load(index);
     auto* const frame = std::get_if<Frame>(&loaded);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
+#include "fovea/errors.h"
 #include "tools/paper/paper_numbers.h"
 
 namespace fovea::paper {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/core/path_name.h"
+#include "fovea/errors.h"
 #include "tools/paper/results_page.h"
 #include "tools/paper/rows.h"
 

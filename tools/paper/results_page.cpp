@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "fovea/core/version.h"
+#include "fovea/platform.h"
 #include "tools/paper/ablations.h"
 #include "tools/paper/paper_charts.h"
 #include "tools/paper/paper_numbers.h"

@@ -8,7 +8,6 @@
 #include "fovea/core/output_file.h"
 #include "fovea/core/path_name.h"
 #include "fovea/core/unfinished_output.h"
-#include "fovea/core/version.h"
 #include "fovea/drive/calibrated_drive.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
@@ -16,6 +15,7 @@
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/summary_json.h"
+#include "fovea/platform.h"
 #include "tools/paper/ablations.h"
 
 namespace fovea::paper {
@@ -127,7 +127,7 @@ class RowRun {
     job.pose_source = plan.pose_source;
     job.hold_out = hold_out;
     job.force = true;
-    return {{"map", to_json(map_drive(drive_, job, [](const MapProgress&) {}))}};
+    return {{"map", to_json(map_drive(drive_, job, [](const RunProgress&) {}))}};
   }
 
   Json score_held_out(const ScoredMap& map) const {

@@ -4,11 +4,11 @@
 #include <chrono>
 #include <numeric>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/random.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/mapping/upsample.h"
+#include "fovea/upsample.h"
 #include "tools/paper/paper_numbers.h"
 
 namespace fovea::paper {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea::paper {
 

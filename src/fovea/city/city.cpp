@@ -9,7 +9,7 @@
 
 #include "fovea/city/json_values.h"
 #include "fovea/core/content_kind.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/value_hash.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fovea/geometry/city_grid.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -11,7 +11,7 @@
 
 #include "../../../tests/temporary_folder.h"
 #include "fovea/city/json_values.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

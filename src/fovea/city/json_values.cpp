@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string_view>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/nesting.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

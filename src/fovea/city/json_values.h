@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fovea/geometry/geodesy.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

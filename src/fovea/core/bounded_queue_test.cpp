@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/thread.h"
+#include "fovea/errors.h"
 
 namespace fovea::bounded_queue_test {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
 #include "fovea/core/input_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -7,12 +7,12 @@
 #include <set>
 #include <thread>
 
-#include "fovea/core/errors.h"
-#include "fovea/core/image.h"
 #include "fovea/core/parallel.h"
-#include "fovea/core/point_cloud.h"
 #include "fovea/core/printable.h"
 #include "fovea/core/random.h"
+#include "fovea/errors.h"
+#include "fovea/image.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea::base_test {
 

@@ -1,4 +1,4 @@
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 #include <fmt/format.h>
 

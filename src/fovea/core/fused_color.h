@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "fovea/core/time.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -1,4 +1,4 @@
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 #include <algorithm>
 #include <cmath>

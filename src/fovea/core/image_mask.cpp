@@ -1,7 +1,7 @@
-#include "fovea/core/image_mask.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -1,10 +1,9 @@
-#include "fovea/core/image_mask.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "fovea/core/random.h"
+#include "fovea/image.h"
 
 namespace fovea::image_mask_test {
 

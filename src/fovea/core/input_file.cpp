@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/machine_error.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -11,7 +11,7 @@
 #include <fstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::input_file_test {
 

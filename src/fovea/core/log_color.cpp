@@ -1,7 +1,7 @@
-#include "fovea/core/log_color.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "fovea/color.h"
 
 namespace fovea {
 namespace {

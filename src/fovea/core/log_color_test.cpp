@@ -1,9 +1,9 @@
-#include "fovea/core/log_color.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "fovea/color.h"
 
 namespace fovea::log_color_test {
 

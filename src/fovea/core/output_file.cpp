@@ -16,10 +16,10 @@
 #include <system_error>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/machine_error.h"
 #include "fovea/core/path_remedy.h"
 #include "fovea/core/unfinished_output.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace fs = std::filesystem;

@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <system_error>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 #include "../../../tests/file_content.h"
 #include "../../../tests/file_size_limit.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::output_folder_test {
 

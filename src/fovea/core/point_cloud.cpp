@@ -1,10 +1,11 @@
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 #include <fmt/format.h>
 
 #include <functional>
 #include <stdexcept>
 
+#include "fovea/core/cloud_columns.h"
 #include "fovea/core/kept_rows.h"
 #include "fovea/core/parallel.h"
 

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/text_encoding.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

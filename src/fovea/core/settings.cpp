@@ -10,11 +10,11 @@
 #include <sstream>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/nesting.h"
 #include "fovea/core/plain_name.h"
 #include "fovea/core/text_encoding.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

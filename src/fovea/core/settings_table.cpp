@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::settings_table_test {
 

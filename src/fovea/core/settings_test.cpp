@@ -7,7 +7,7 @@
 
 #include "../../../tests/temporary_folder.h"
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::settings_test {
 

@@ -11,10 +11,10 @@
 #include <thread>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/machine_error.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 
 namespace fovea::sqlite {
 namespace {

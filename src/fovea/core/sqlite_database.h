@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 struct sqlite3;
 struct sqlite3_stmt;

@@ -1,4 +1,4 @@
-#include "fovea/core/version.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

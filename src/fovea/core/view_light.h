@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "fovea/core/log_color.h"
+#include "fovea/color.h"
 
 namespace fovea {
 

@@ -9,10 +9,10 @@
 #include <system_error>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/drive/kitti/kitti_drives.h"
 #include "fovea/drive/recalibrated_source.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

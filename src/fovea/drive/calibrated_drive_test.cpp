@@ -6,10 +6,10 @@
 
 #include "../../../tests/kitti_test_drive.h"
 #include "../../../tests/truth_writer.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/drive_truth.h"
 #include "fovea/drive/kitti/tracklets.h"
+#include "fovea/errors.h"
 
 namespace fovea::calibrated_drive_test {
 

@@ -8,9 +8,9 @@
 #include <map>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/printable.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_description.h"
+#include "fovea/errors.h"
 
 namespace fovea::calibration_file_test {
 

@@ -11,10 +11,10 @@
 #include <set>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/drive/calibrated_drive.h"
 #include "fovea/drive/kitti/kitti_drives.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea::command_files_test {

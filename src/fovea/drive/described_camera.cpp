@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/rectified_camera.h"
 
 namespace fovea {

@@ -6,9 +6,9 @@
 #include <array>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_description.h"
 #include "fovea/drive/motion_keys.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

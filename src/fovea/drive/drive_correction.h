@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fovea/core/settings.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

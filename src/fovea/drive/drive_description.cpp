@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/settings.h"
 #include "fovea/drive/calibration_file.h"
 #include "fovea/drive/images/image_decode.h"
@@ -14,6 +13,7 @@
 #include "fovea/drive/lidar_keys.h"
 #include "fovea/drive/motion_keys.h"
 #include "fovea/drive/plausible_lens.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -12,8 +12,8 @@
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/imu_data.h"
 #include "fovea/geometry/lens.h"
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/geometry/sensor_profile.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

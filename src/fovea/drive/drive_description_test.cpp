@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/rectified_camera.h"
 
 namespace fovea::drive_description_test {

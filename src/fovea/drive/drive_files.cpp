@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

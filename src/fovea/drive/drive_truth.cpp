@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/nesting.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/calibrated_drive.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea {

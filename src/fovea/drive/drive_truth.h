@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/image.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/geometry/geodesy.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/image.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

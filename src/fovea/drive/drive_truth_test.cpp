@@ -4,8 +4,8 @@
 
 #include "../../../tests/kitti_test_drive.h"
 #include "../../../tests/truth_writer.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 
 namespace fovea::drive_truth_test {
 

@@ -3,7 +3,6 @@
 
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/frame_parts.h"
@@ -11,6 +10,7 @@
 #include "fovea/drive/lost_drive.h"
 #include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/drive/scans/sensor_scans.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/scans/lidar_scan.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

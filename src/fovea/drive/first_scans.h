@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/core/read_file.h"
-#include "fovea/core/time.h"
 #include "fovea/drive/scans/scan_format.h"
 #include "fovea/drive/scans/scan_numbers.h"
+#include "fovea/point_cloud.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

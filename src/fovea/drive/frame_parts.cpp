@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/deskew.h"
 #include "fovea/drive/lost_drive.h"
-#include "fovea/drive/motion_compensation.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -10,18 +10,18 @@
 #include <variant>
 #include <vector>
 
-#include "fovea/core/image.h"
-#include "fovea/core/image_mask.h"
+#include "fovea/camera.h"
 #include "fovea/core/messages.h"
-#include "fovea/core/point_cloud.h"
-#include "fovea/core/time.h"
+#include "fovea/drive.h"
 #include "fovea/drive/motion_data.h"
 #include "fovea/drive/scans/dropped_points.h"
-#include "fovea/geometry/camera.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/imu_data.h"
 #include "fovea/geometry/sensor_profile.h"
-#include "fovea/geometry/trajectory.h"
+#include "fovea/image.h"
+#include "fovea/point_cloud.h"
+#include "fovea/time.h"
+#include "fovea/trajectory.h"
 
 namespace fovea {
 
@@ -76,20 +76,6 @@ struct SkippedFrame {
 };
 
 using LoadedFrame = std::variant<Frame, SkippedFrame>;
-
-struct DriveOptions {
-  /// Camera numbers in the order in which they take turns; empty: camera 2, or else the first
-  /// colour camera that the drive has, or else the first camera.
-  std::vector<int> cameras;
-  /// Half-open range of frame indices; an open end is the drive's own.
-  std::optional<int> begin, end;
-  bool use_navigation = true;
-  bool use_imu = true;  ///< angular rates, accelerations and wheel speeds
-  /// Masks by number of the camera, in place of those that the drive has.
-  std::map<int, std::filesystem::path> masks;
-  /// False: scans alone are read; the calibration has no cameras, and the drive needs none.
-  bool use_images = true;
-};
 
 /// DriveInfo::kind of a drive whose frames come while it is mapped.
 inline constexpr const char* kLiveDrive = "live";

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/described_camera.h"
 #include "fovea/drive/drive_description.h"
 #include "fovea/drive/drive_files.h"
@@ -14,6 +13,7 @@
 #include "fovea/drive/navigation/generic_navigation.h"
 #include "fovea/drive/navigation/imu_table.h"
 #include "fovea/drive/nearest_images.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

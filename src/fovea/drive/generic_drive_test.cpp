@@ -10,7 +10,7 @@
 
 #include "../../../tests/kitti_test_drive.h"
 #include "../../../tests/peak_memory.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::generic_drive_test {
 

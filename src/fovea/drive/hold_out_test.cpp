@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::hold_out_test {
 

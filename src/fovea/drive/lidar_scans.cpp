@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_stamps.h"
 #include "fovea/drive/scans/described_sweep.h"
 #include "fovea/drive/scans/recognized_format.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

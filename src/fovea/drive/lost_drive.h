@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

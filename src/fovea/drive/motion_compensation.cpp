@@ -1,5 +1,3 @@
-#include "fovea/drive/motion_compensation.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/core/quick_angle.h"
+#include "fovea/deskew.h"
 
 namespace fovea {
 namespace {

@@ -1,5 +1,3 @@
-#include "fovea/drive/motion_compensation.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +7,7 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/core/random.h"
+#include "fovea/deskew.h"
 
 namespace fovea::motion_compensation_test {
 

@@ -7,7 +7,7 @@
 
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/imu_data.h"
-#include "fovea/geometry/trajectory.h"
+#include "fovea/trajectory.h"
 
 namespace fovea {
 

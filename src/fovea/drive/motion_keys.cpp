@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/plausible.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

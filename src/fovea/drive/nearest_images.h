@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/time.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

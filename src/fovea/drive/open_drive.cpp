@@ -4,13 +4,13 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/path_remedy.h"
 #include "fovea/drive/calibrated_drive.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/generic_drive.h"
 #include "fovea/drive/kitti/kitti_drives.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
 #include "../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 
 namespace fovea::open_drive_test {
 

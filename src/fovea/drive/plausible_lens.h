@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/geometry/lens.h"
 
 namespace fovea {

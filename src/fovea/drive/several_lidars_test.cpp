@@ -7,11 +7,11 @@
 
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/deskew.h"
 #include "fovea/drive/frame_source.h"
-#include "fovea/drive/motion_compensation.h"
 #include "fovea/drive/scans/sensor_scans.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
+#include "fovea/errors.h"
 
 namespace fovea::several_lidars_test {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

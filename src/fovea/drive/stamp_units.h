@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/time.h"
 #include "fovea/drive/scans/csv_rows.h"
 #include "fovea/drive/time_stamps.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::stamp_units_test {
 

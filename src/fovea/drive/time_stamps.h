@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/time.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

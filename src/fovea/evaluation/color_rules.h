@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/sharpness.h"
 #include "fovea/evaluation/surface_normals.h"
 #include "fovea/evaluation/training_views.h"

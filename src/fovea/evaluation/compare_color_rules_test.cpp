@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/test_scene.h"
 #include "fovea/evaluation/training_views.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "fovea/city/city_frames.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/path_name.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/drive_match.h"
 
 namespace fovea {

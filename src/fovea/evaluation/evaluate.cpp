@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/evaluation_setup.h"

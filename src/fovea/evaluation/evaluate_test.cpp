@@ -7,8 +7,8 @@
 
 #include "../../../tests/temporary_folder.h"
 #include "../../../tests/tracklet_writer.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/test_scene.h"
 
 namespace fovea::evaluate_test {

@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/metrics.h"
 #include "fovea/evaluation/seams.h"

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/truth_test_scene.h"
 #include "fovea/geometry/transform_cloud.h"
 

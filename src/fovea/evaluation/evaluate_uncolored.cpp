@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/scored_frames.h"
 #include "fovea/evaluation/warnings.h"

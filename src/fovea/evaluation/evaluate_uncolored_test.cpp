@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/test_scene.h"
 
 namespace fovea::evaluate_uncolored_test {

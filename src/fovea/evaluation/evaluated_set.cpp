@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "fovea/drive/motion_compensation.h"
+#include "fovea/deskew.h"
 
 namespace fovea {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 
 namespace fovea {

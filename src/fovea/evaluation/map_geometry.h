@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

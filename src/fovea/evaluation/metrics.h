@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/image.h"
 #include "fovea/evaluation/evaluated_set.h"
 #include "fovea/geometry/kd_tree.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

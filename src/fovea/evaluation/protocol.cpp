@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

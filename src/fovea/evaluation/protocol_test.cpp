@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/test_scene.h"
 
 namespace fovea::protocol_test {

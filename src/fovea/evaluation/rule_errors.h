@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "fovea/core/point_reason.h"
 #include "fovea/evaluation/metrics.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include "fovea/core/parallel.h"
 #include "fovea/evaluation/evaluated_set.h"
 #include "fovea/geometry/kd_tree.h"
-#include "fovea/mapping/ground.h"
+#include "fovea/ground.h"
 
 namespace fovea {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "fovea/city/city_frames.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/tile_place.h"

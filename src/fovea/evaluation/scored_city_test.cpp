@@ -9,7 +9,7 @@
 #include "../../../tests/sample_map.h"
 #include "../../../tests/synthetic_drive.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/map/map_meta.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/map/meta_keys.h"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/map/colored_points.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_store.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

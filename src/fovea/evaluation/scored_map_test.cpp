@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "../../../tests/peak_memory.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/point_files/ply_reader.h"
 
 namespace fovea::scored_map_test {

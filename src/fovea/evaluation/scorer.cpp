@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/predicted_light.h"
 #include "fovea/evaluation/scored_frames.h"
 #include "fovea/mapping/scan_projection.h"

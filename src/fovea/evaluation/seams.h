@@ -1,7 +1,7 @@
 // Seams: steps of exposure between points of a map that different images have colored.
 #pragma once
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

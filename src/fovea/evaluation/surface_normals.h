@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/metrics.h"
 
 namespace fovea {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/evaluation/truth_poses.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

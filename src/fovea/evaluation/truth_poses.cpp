@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 
 namespace fovea {

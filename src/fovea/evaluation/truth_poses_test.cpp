@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/evaluation/truth_test_scene.h"
 
 namespace fovea::truth_poses_test {

@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/camera.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/truth_poses.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/point_cloud.h"
 #include "fovea/world/surface_index.h"
 #include "fovea/world/world_file.h"
 

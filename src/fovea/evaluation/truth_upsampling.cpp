@@ -3,7 +3,7 @@
 #include "fovea/core/parallel.h"
 #include "fovea/evaluation/truth_surfaces.h"
 #include "fovea/geometry/kd_tree.h"
-#include "fovea/mapping/upsample.h"
+#include "fovea/upsample.h"
 
 namespace fovea {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "fovea/camera.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/truth_poses.h"
-#include "fovea/geometry/camera.h"
 #include "fovea/world/surface_index.h"
 
 namespace fovea {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

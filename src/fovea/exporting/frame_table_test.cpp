@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::frame_table_test {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "fovea/core/version.h"
 #include "fovea/map/point_files/byte_packer.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea {

@@ -8,7 +8,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::pose_writer_test {
 

@@ -1,4 +1,4 @@
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/flat_map.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

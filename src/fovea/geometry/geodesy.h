@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -6,7 +6,7 @@
 #include <GeographicLib/UTMUPS.hpp>
 #include <cmath>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

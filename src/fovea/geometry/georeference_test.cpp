@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::georeference_test {
 

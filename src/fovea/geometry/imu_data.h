@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/time.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

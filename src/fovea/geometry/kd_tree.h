@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
 #include "fovea/geometry/neighbor.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

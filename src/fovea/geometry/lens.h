@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::lidar_data_sheet_test {
 

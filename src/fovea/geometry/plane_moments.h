@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/lanes.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

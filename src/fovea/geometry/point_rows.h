@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/lanes.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

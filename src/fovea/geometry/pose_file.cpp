@@ -5,9 +5,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/text_encoding.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/position_limit.h"
 
 namespace fovea {

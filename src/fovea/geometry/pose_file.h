@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

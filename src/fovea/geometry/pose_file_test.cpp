@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::pose_file_test {
 

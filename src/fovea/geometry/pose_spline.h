@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/geometry/trajectory.h"
+#include "fovea/trajectory.h"
 
 namespace fovea {
 

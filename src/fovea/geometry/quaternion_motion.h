@@ -1,7 +1,7 @@
 // Rigid motions in the numbers that tables, configuration files and ROS messages hold.
 #pragma once
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/geometry/lens.h"
 
 namespace fovea {

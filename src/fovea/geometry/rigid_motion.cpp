@@ -1,4 +1,4 @@
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 #include <Eigen/SVD>
 #include <cmath>

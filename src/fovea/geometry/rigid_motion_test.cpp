@@ -1,4 +1,4 @@
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

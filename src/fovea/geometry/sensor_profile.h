@@ -2,36 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/sweep_motion.h"
 
 namespace fovea {
-
-/// Direction of rotation, seen from above.
-enum class SweepDirection { kClockwise, kCounterclockwise };
-
-/// When the points of a sweep were measured, for scans whose points have no times.
-///
-/// The sensor turns once a period. It starts at `start_azimuth`; at the scan's stamp it has
-/// completed the share `stamp_phase` of the sweep. The defaults are KITTI's: clockwise from behind,
-/// so that the sensor faces forward at the stamp.
-struct SweepTiming {
-  double period = 0.1;  ///< s
-  SweepDirection direction = SweepDirection::kClockwise;
-  double start_azimuth = std::numbers::pi;  ///< rad, atan2(y, x) in the LiDAR frame
-  double stamp_phase = 0.5;                 ///< 0: stamped at the start of the sweep; 1: at its end
-
-  /// From the stamp to the start, the middle and the end of the sweep (s).
-  double start_time() const { return -stamp_phase * period; }
-  double middle_time() const { return (0.5 - stamp_phase) * period; }
-  double end_time() const { return (1 - stamp_phase) * period; }
-
-  bool operator==(const SweepTiming&) const = default;
-};
 
 /// A LiDAR of a drive. Every constant that depends on the sensor is derived from it.
 struct SensorProfile {

@@ -1,4 +1,4 @@
-#include "fovea/geometry/sweep_motion.h"
+#include "fovea/sweep_motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fovea/geometry/trajectory.h"
+#include "fovea/trajectory.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,8 +1,8 @@
 // Moving clouds from one frame of reference to another.
 #pragma once
 
-#include "fovea/core/point_cloud.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/point_cloud.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

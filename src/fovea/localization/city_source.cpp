@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "fovea/city/city_frames.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/localization/surface_source.h"
 #include "fovea/map/map_surfaces.h"

@@ -6,7 +6,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/localization/surface_source.h"
 #include "fovea/map/map_surfaces.h"

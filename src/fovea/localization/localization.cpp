@@ -1,4 +1,4 @@
-#include "fovea/localization/localization.h"
+#include "fovea/localize.h"
 
 namespace fovea {
 

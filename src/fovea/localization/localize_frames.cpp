@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "fovea/core/bounded_queue.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/process_memory.h"
 #include "fovea/core/thread.h"
 #include "fovea/core/wall_clock.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/localization/localize_drive.h"
 #include "fovea/pipeline/live_stream.h"
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
-#include "fovea/drive/motion_compensation.h"
+#include "fovea/deskew.h"
 #include "fovea/drive/scans/sensor_scans.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/localization/surfaces_in_view.h"
 #include "fovea/map/map_surfaces.h"

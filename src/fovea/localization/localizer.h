@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "fovea/drive/frame_source.h"
-#include "fovea/localization/localization.h"
 #include "fovea/localization/place_candidates.h"
 #include "fovea/localization/prior_map.h"
 #include "fovea/localization/surface_source.h"
+#include "fovea/localize.h"
 #include "fovea/map/map_store.h"
 #include "fovea/mapping/range_image.h"
 #include "fovea/pipeline/motion_model.h"

@@ -8,8 +8,8 @@
 
 #include "../../../tests/temporary_folder.h"
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/localization/localize_drive.h"
 #include "fovea/localization/test_visit.h"
 #include "fovea/map/map_surfaces.h"

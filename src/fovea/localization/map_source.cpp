@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/localization/surface_source.h"
 #include "fovea/map/map_surfaces.h"
 

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <limits>
 
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/mapping/range_image.h"
 #include "fovea/mapping/registration/registration.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -9,7 +9,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_test_support.h"
 
 namespace fovea::checkpointer_test {

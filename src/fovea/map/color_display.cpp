@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
 #include "fovea/core/read_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/log_color.h"
+#include "fovea/color.h"
 #include "fovea/map/frame_record.h"
 
 namespace fovea {

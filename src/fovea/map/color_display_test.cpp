@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::color_display_test {
 

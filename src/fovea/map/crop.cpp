@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
 

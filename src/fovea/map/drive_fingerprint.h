@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
-#include "fovea/core/time.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/geometry/sensor_profile.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

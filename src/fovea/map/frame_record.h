@@ -8,14 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/time.h"
 #include "fovea/core/view_light.h"
-#include "fovea/geometry/sweep_motion.h"
+#include "fovea/map.h"
+#include "fovea/sweep_motion.h"
+#include "fovea/time.h"
 
 namespace fovea {
 
-enum class FrameStatus { kMapped, kHeldOut, kSkipped };
-const char* to_string(FrameStatus status);
 /// The status of that name, or nothing.
 std::optional<FrameStatus> frame_status(std::string_view name);
 

@@ -12,7 +12,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_schema.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/meta_keys.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/sqlite_database.h"
+#include "fovea/errors.h"
 #include "fovea/map/first_page.h"
 #include "fovea/map/map_format.h"
 #include "fovea/map/map_row.h"

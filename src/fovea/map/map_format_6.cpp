@@ -11,7 +11,7 @@
 #include <new>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
 

@@ -10,7 +10,7 @@
 #include "../../../tests/file_size_limit.h"
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea::map_log_test {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
 #include "fovea/map/tile_points.h"

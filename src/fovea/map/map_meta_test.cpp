@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::map_meta_test {
 

@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_file.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/numbered_records.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "fovea/geometry/geodesy.h"
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/geometry/sensor_profile.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

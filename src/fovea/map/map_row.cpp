@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/position_limit.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/number_text.h"

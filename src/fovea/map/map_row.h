@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "fovea/core/sqlite_database.h"
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/map_schema.h"
 #include "fovea/map/value_hash.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -4,8 +4,8 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/sqlite_database.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea::map_scratch_test {

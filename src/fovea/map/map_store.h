@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_records.h"
 #include "fovea/map/packed_tile.h"
 #include "fovea/map/point_filter.h"
 #include "fovea/map/tile_map.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

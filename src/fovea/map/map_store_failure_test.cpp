@@ -16,8 +16,8 @@
 #include "../../../tests/file_size_limit.h"
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/random.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/record_rows.h"
 

@@ -10,7 +10,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/tile_points.h"
 
 namespace fovea::map_store_test {

@@ -7,7 +7,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/tile_place.h"
 
 namespace fovea::map_surfaces_test {

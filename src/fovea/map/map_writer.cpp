@@ -6,11 +6,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/sqlite_database.h"
 #include "fovea/core/unfinished_output.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_format.h"
 #include "fovea/map/map_log.h"
 #include "fovea/map/map_schema.h"

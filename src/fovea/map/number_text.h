@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/geometry/sweep_motion.h"
+#include "fovea/sweep_motion.h"
 
 namespace fovea {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_file.h"
 #include "fovea/map/record_rows.h"
 

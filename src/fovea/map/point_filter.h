@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::point_filter_test {
 

@@ -6,7 +6,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 
 namespace fovea::repair_test {

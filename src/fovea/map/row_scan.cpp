@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/meta_keys.h"
 

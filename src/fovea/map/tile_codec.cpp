@@ -7,7 +7,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/zstd_blob.h"
 

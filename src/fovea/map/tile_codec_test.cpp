@@ -4,7 +4,7 @@
 
 #include "../../../tests/peak_memory.h"
 #include "../../../tests/sample_map.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::tile_codec_test {
 

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/tile_points.h"
+#include "fovea/point_cloud.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

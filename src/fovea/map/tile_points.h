@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "fovea/core/fused_color.h"
-#include "fovea/core/point_cloud.h"
 #include "fovea/core/run_column.h"
 #include "fovea/core/steps.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

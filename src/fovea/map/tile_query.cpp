@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/position_limit.h"
 #include "fovea/map/map_store.h"
 

@@ -1,7 +1,7 @@
 // Images without content: a covered lens, a failed camera, glare.
 #pragma once
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

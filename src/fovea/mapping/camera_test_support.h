@@ -1,7 +1,7 @@
 // The camera of the tests.
 #pragma once
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 
 namespace fovea {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/mapping/projected_points.h"
 
 namespace fovea {

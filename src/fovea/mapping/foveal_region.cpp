@@ -1,4 +1,4 @@
-#include "fovea/mapping/foveal_region.h"
+#include "fovea/foveal_region.h"
 
 #include <cmath>
 #include <limits>

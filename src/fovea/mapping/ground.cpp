@@ -1,4 +1,4 @@
-#include "fovea/mapping/ground.h"
+#include "fovea/ground.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

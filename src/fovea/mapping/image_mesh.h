@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/mapping/delaunay.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

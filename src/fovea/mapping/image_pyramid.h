@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fovea/core/color_block.h"
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

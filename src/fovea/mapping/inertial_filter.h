@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "fovea/geometry/sweep_motion.h"
 #include "fovea/mapping/imu_integration.h"
+#include "fovea/sweep_motion.h"
 
 namespace fovea {
 

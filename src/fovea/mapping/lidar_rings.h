@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

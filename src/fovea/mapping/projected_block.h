@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 
 namespace fovea {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "fovea/core/color_block.h"
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/view_light.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

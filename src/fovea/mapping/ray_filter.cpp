@@ -1,4 +1,4 @@
-#include "fovea/mapping/ray_filter.h"
+#include "fovea/ray_filter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <deque>
 #include <vector>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/mapping/image_pyramid.h"
 #include "fovea/mapping/response_fit.h"
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

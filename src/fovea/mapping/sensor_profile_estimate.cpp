@@ -9,7 +9,7 @@
 
 #include "fovea/core/angle.h"
 #include "fovea/core/median.h"
-#include "fovea/mapping/ground.h"
+#include "fovea/ground.h"
 #include "fovea/mapping/lidar_rings.h"
 
 namespace fovea {

@@ -3,27 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
-#include "fovea/geometry/camera.h"
 #include "fovea/mapping/image_mesh.h"
+#include "fovea/surface_samples.h"
 
 namespace fovea {
-
-struct SurfaceOptions {
-  double spacing = 0.02;                     ///< of the samples, m
-  double max_edge = 0.4;                     ///< m: triangles with shorter edges are surface
-  double planar_edge = 1.0;                  ///< m: the same where the surface is flat
-  double planar_angle = 0.5235987755982988;  ///< rad, between the normals on both sides of an edge
-  /// About this many samples in a pixel, 0: no limit. If more of the finest cells project to a
-  /// pixel, cells of 2, 4, 8 or 16 times their edge are sampled: the image cannot resolve more.
-  double max_per_pixel = 4;
-  /// m from the camera: beyond, one sample in a pixel suffices, and no cell is of the finest level.
-  /// Nearer frames will measure the surface better, and replace these samples.
-  double full_density_range = std::numeric_limits<double>::infinity();
-};
 
 /// The surface triangles between a cloud's projected points, and their normals.
 struct Surface {

@@ -1,4 +1,4 @@
-#include "fovea/mapping/surface_samples.h"
+#include "fovea/surface_samples.h"
 
 #include <algorithm>
 #include <array>
@@ -6,6 +6,7 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/geometry/cell_brick.h"
+#include "fovea/mapping/surface.h"
 
 namespace fovea {
 namespace {

@@ -1,4 +1,4 @@
-#include "fovea/mapping/surface_samples.h"
+#include "fovea/surface_samples.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <set>
 
 #include "fovea/core/parallel.h"
+#include "fovea/mapping/surface.h"
 #include "fovea/mapping/surface_test_support.h"
 
 namespace fovea::surface_samples_test {

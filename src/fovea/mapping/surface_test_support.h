@@ -9,7 +9,7 @@
 #include "fovea/core/angle.h"
 #include "fovea/core/random.h"
 #include "fovea/mapping/camera_test_support.h"
-#include "fovea/mapping/surface_samples.h"
+#include "fovea/surface_samples.h"
 
 namespace fovea::surface_test {
 

@@ -1,4 +1,4 @@
-#include "fovea/mapping/texture.h"
+#include "fovea/texture.h"
 
 #include "fovea/core/parallel.h"
 

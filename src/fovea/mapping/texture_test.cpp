@@ -1,4 +1,4 @@
-#include "fovea/mapping/texture.h"
+#include "fovea/texture.h"
 
 #include <gtest/gtest.h>
 

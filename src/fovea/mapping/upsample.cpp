@@ -1,4 +1,4 @@
-#include "fovea/mapping/upsample.h"
+#include "fovea/upsample.h"
 
 #include <array>
 #include <type_traits>

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "../../../tests/kitti_sample.h"
-#include "fovea/mapping/upsample.h"
+#include "fovea/upsample.h"
 
 namespace fovea::upsample_kitti_test {
 

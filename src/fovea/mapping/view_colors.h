@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/image_mask.h"
+#include "fovea/camera.h"
 #include "fovea/core/view_light.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/image.h"
 #include "fovea/mapping/color_fusion.h"
 #include "fovea/mapping/depth_buffer.h"
 #include "fovea/mapping/image_pyramid.h"

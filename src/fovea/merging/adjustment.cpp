@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/mapping/fusion/pose_graph.h"
 #include "fovea/merging/city_gains.h"

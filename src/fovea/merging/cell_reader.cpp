@@ -1,7 +1,7 @@
 #include "fovea/merging/cell_reader.h"
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/map/tile_place.h"
 
 namespace fovea {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

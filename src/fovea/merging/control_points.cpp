@@ -9,8 +9,8 @@
 #include <optional>
 #include <string_view>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

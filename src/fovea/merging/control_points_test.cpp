@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::control_points_test {
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/tile_points.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

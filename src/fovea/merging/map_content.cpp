@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/map/meta_keys.h"
 

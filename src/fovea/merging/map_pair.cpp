@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/merging/map_gain.h"
 #include "fovea/merging/shift_search.h"

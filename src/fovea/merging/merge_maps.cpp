@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/tile_cache.h"

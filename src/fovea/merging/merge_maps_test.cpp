@@ -7,8 +7,8 @@
 
 #include "../../../tests/synthetic_drive.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/pipeline/map_drive.h"
 

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "fovea/city/json_file_test_support.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::pair_file_test {
 

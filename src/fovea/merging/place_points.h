@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/tile_map.h"
+#include "fovea/point_cloud.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

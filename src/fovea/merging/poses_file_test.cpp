@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "fovea/city/json_file_test_support.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/geodesy.h"
 
 namespace fovea::poses_file_test {

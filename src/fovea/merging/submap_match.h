@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/log_color.h"
+#include "fovea/color.h"
 #include "fovea/merging/submap_scans.h"
 
 namespace fovea {

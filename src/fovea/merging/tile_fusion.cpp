@@ -7,14 +7,14 @@
 #include <set>
 #include <tuple>
 
-#include "fovea/core/errors.h"
-#include "fovea/core/version.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/merging/cell_reader.h"
 #include "fovea/merging/free_space.h"
 #include "fovea/merging/known_surfaces.h"
 #include "fovea/merging/renumbered_column.h"
 #include "fovea/merging/tile_output.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 namespace {

@@ -1,7 +1,7 @@
 // Twists and their covariances in another frame. Private to merging/.
 #pragma once
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/settings.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/old_settings.h"
 #include "fovea/pipeline/presets.h"
 #include "fovea/pipeline/settings_rows.h"

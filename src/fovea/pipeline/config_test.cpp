@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/settings_rows.h"
 
 namespace fovea::config_test {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
-#include "fovea/drive/motion_compensation.h"
+#include "fovea/deskew.h"
 #include "fovea/drive/recalibrated_source.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/rotation_vector.h"
 #include "fovea/mapping/calibration/extrinsic_estimate.h"
 #include "fovea/pipeline/scan_edges.h"

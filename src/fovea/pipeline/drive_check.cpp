@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/scan_edges.h"
 

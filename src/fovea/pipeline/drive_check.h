@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/core/image.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

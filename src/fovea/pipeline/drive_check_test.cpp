@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "../../../tests/synthetic_drive.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::drive_check_test {
 

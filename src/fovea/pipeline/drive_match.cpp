@@ -10,9 +10,9 @@
 #include <set>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/path_name.h"
 #include "fovea/drive/renumbered_drive.h"
+#include "fovea/errors.h"
 #include "fovea/map/drive_fingerprint.h"
 
 namespace fovea {

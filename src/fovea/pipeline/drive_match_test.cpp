@@ -6,7 +6,7 @@
 #include <set>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/drive_records.h"
 
 namespace fovea::drive_match_test {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/drive_fingerprint.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"

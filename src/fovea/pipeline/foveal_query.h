@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "fovea/foveal_region.h"
 #include "fovea/map/tile_map.h"
-#include "fovea/mapping/foveal_region.h"
-#include "fovea/mapping/ray_filter.h"
+#include "fovea/ray_filter.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/numbered_frames.h"
 
 namespace fovea::frame_reader_test {

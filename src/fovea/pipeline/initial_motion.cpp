@@ -1,13 +1,13 @@
 #include "fovea/pipeline/initial_motion.h"
 
-#include "fovea/core/time.h"
-#include "fovea/drive/motion_compensation.h"
+#include "fovea/deskew.h"
 #include "fovea/geometry/point_index.h"
 #include "fovea/geometry/voxel_grid.h"
-#include "fovea/mapping/ground.h"
+#include "fovea/ground.h"
 #include "fovea/pipeline/frame_motion.h"
 #include "fovea/pipeline/pose_refiner.h"
 #include "fovea/pipeline/scan_geometry.h"
+#include "fovea/time.h"
 
 namespace fovea {
 namespace {

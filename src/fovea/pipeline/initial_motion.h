@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fovea/drive/frame_source.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

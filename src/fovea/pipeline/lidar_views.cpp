@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 
 namespace fovea {
 

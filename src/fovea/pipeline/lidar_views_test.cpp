@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea::lidar_views_test {
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/map/keyframe_returns.h"
 #include "fovea/map/map_meta.h"

@@ -13,7 +13,7 @@
 namespace fovea {
 
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
-                     const std::function<void(const MapProgress&)>& progress) {
+                     const std::function<void(const RunProgress&)>& progress) {
   const WallClock::time_point start = WallClock::now();
   validate(job.settings);
   DriveInfo drive = info_with_lidars(source);

@@ -65,7 +65,7 @@ struct MapJob {
   std::stop_token stop;             ///< ends after the frames at hand; what was mapped is committed
 };
 
-struct MapProgress {
+struct RunProgress {
   int done = 0, total = 0;  ///< frames
   std::size_t points = 0;
   const FrameRecord* latest = nullptr;
@@ -78,6 +78,6 @@ struct MapProgress {
 /// after the map of all other frames is complete, if the drive was lost or too many frames are
 /// damaged. After any other error, the file has the frames of the last commit and can be resumed.
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
-                     const std::function<void(const MapProgress&)>& progress);
+                     const std::function<void(const RunProgress&)>& progress);
 
 }  // namespace fovea

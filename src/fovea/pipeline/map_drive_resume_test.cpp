@@ -20,7 +20,7 @@ TEST_F(MapDriveResume, AnInterruptedRunGoesOnToTheSameMap) {
   std::stop_source stop;
   MapJob job = this->job();
   job.stop = stop.get_token();
-  const MapSummary cut = map_drive(drive_, job, [&](const MapProgress& progress) {
+  const MapSummary cut = map_drive(drive_, job, [&](const RunProgress& progress) {
     if (progress.done == 3) stop.request_stop();
   });
   ASSERT_TRUE(cut.interrupted);
@@ -47,7 +47,7 @@ TEST_F(MapDriveResume, WithoutCamerasTheMapIsTheSameAtAnyThreadsAndWhenResumed) 
   MapJob part = job;
   part.overlap = false;
   part.stop = stop.get_token();
-  map_drive(drive_, part, [&](const MapProgress& progress) {
+  map_drive(drive_, part, [&](const RunProgress& progress) {
     if (progress.done == 3) stop.request_stop();
   });
   part.stop = {};
@@ -80,7 +80,7 @@ TEST_F(MapDriveResume, ADriveThatBeginsAtSpeedIsMappedAndResumed) {
       MapJob part = job;
       part.overlap = false;
       part.stop = stop.get_token();
-      map_drive(drive, part, [&](const MapProgress& progress) {
+      map_drive(drive, part, [&](const RunProgress& progress) {
         if (progress.done == frames) stop.request_stop();
       });
       part.stop = {};
@@ -123,7 +123,7 @@ TEST_F(MapDriveResume, ADriveOfAnotherCalibrationOrOtherStampsDoesNotResume) {
   std::stop_source stop;
   MapJob job = this->job();
   job.stop = stop.get_token();
-  map_drive(drive_, job, [&](const MapProgress&) { stop.request_stop(); });
+  map_drive(drive_, job, [&](const RunProgress&) { stop.request_stop(); });
   job.stop = {};
   job.resume = true;
   const auto refusal = [&](const FrameSource& drive) -> std::string {
@@ -161,7 +161,7 @@ TEST_F(MapDriveResume, ARenamedDriveResumesToTheSameMap) {
   std::stop_source stop;
   MapJob job = this->job();
   job.stop = stop.get_token();
-  map_drive(drive_, job, [&](const MapProgress&) { stop.request_stop(); });
+  map_drive(drive_, job, [&](const RunProgress&) { stop.request_stop(); });
   job.stop = {};
   job.resume = true;
   BrokenDrive renamed;
@@ -222,7 +222,7 @@ TEST_F(MapDriveResume, WithAnImuTheMapIsTheSameAtAnyThreadsAndWhenResumed) {
     MapJob part = job;
     part.overlap = false;
     part.stop = stop.get_token();
-    map_drive(drive, part, [&](const MapProgress& progress) {
+    map_drive(drive, part, [&](const RunProgress& progress) {
       if (progress.done == frames) stop.request_stop();
     });
     part.stop = {};

@@ -46,7 +46,7 @@ TEST_F(MapDrive, OverlapChangesNothing) {
     MapJob job = this->job();
     job.overlap = overlap;
     std::vector<int> told;
-    map_drive(drive_, job, [&](const MapProgress& progress) {
+    map_drive(drive_, job, [&](const RunProgress& progress) {
       told.push_back(progress.latest->index);
       EXPECT_EQ(progress.done, static_cast<int>(told.size()));
     });
@@ -63,11 +63,11 @@ TEST_F(MapDrive, AnErrorEndsTheRunAndLeavesNothing) {
     MapJob job = this->job();
     job.overlap = overlap;
     int done = 0;
-    EXPECT_THROW(map_drive(drive_, job, [&](const MapProgress&) { ++done; }), InputError);
+    EXPECT_THROW(map_drive(drive_, job, [&](const RunProgress&) { ++done; }), InputError);
     EXPECT_EQ(done, 4);
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
     // One of the last stage, while the others are at work.
-    EXPECT_THROW(map_drive(drive_, job, [](const MapProgress&) { throw OutputError("", "", ""); }),
+    EXPECT_THROW(map_drive(drive_, job, [](const RunProgress&) { throw OutputError("", "", ""); }),
                  OutputError);
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
   }
@@ -143,7 +143,7 @@ TEST_F(MapDrive, WhatIsOutOfReachNeedNotBeInMemory) {
     std::stop_source stop;
     job.stop = stop.get_token();
     job.resume = end > 1;
-    map_drive(drive, job, [&](const MapProgress& progress) {
+    map_drive(drive, job, [&](const RunProgress& progress) {
       if (progress.done >= end) stop.request_stop();
     });
   }
@@ -179,7 +179,7 @@ TEST_F(MapDrive, FramesInTimeAreNotLate) {
   job.rate = 0.5;
   int too_slow = 0;
   const auto start = std::chrono::steady_clock::now();
-  const MapSummary summary = map_drive(drive_, job, [&](const MapProgress& progress) {
+  const MapSummary summary = map_drive(drive_, job, [&](const RunProgress& progress) {
     too_slow += progress.latest->milliseconds.at("frame") > 2000;
   });
   EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
@@ -192,7 +192,7 @@ TEST_F(MapDrive, AFrameIsAsLateAsAllThatItWaitedFor) {
   MapJob job = this->job();
   job.rate = 1e6;
   std::vector<double> latencies, in_turn;
-  map_drive(drive_, job, [&](const MapProgress& progress) {
+  map_drive(drive_, job, [&](const RunProgress& progress) {
     const auto& ms = progress.latest->milliseconds;
     latencies.push_back(ms.at("frame"));
     // What the scan alone shows is made beside the registration, and a scan becomes a target while

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/mapper_test_support.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/live_stream.h"
@@ -12,7 +12,7 @@
 
 namespace fovea {
 MapSummary map_live(LiveSource& source, const MapJob& job,
-                    const std::function<void(const MapProgress&)>& progress) {
+                    const std::function<void(const RunProgress&)>& progress) {
   const ClosedAtEnd closed(source);
   validate(job.settings);
   const std::shared_ptr<const FrameSource> first_frames = source.begin(job.stop);

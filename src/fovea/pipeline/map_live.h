@@ -18,6 +18,6 @@ namespace fovea {
 /// @param progress  as for map_drive(); the total is 0
 /// Errors as map_drive(). InputError if the source is closed before the first scan.
 MapSummary map_live(LiveSource& source, const MapJob& job,
-                    const std::function<void(const MapProgress&)>& progress);
+                    const std::function<void(const RunProgress&)>& progress);
 
 }  // namespace fovea

@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/live/test_live_drive.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/live_state.h"
@@ -95,7 +95,7 @@ class MapLive : public testing::Test {
     });
     MapJob job = this->job("map.fovea");
     job.texture_every_frame = false;
-    return map_live(source, job, [&](const MapProgress& progress) { after(progress.done); });
+    return map_live(source, job, [&](const RunProgress& progress) { after(progress.done); });
   }
 
   TemporaryFolder folder_;
@@ -297,7 +297,7 @@ TEST_F(MapLive, AStopEndsTheRunWithACompleteMap) {
     source.close();
   });
   int done = 0;
-  const MapSummary summary = map_live(source, job, [&](const MapProgress& progress) {
+  const MapSummary summary = map_live(source, job, [&](const RunProgress& progress) {
     done = progress.done;
     if (progress.done == 6) stop.request_stop();
   });

@@ -5,9 +5,9 @@
 #include <memory>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/recalibrated_source.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/earlier_run.h"
@@ -150,7 +150,7 @@ std::vector<int> MapRun::remaining_frames() const {
 }
 
 void MapRun::map_frames(FrameStream& stream,
-                        const std::function<void(const MapProgress&)>& progress) {
+                        const std::function<void(const RunProgress&)>& progress) {
   const auto read = [&](const std::stop_token& stop) {
     std::optional<ReadFrame> frame = stream.next(stop);
     if (frame) ++frames_read_;
@@ -181,7 +181,7 @@ TrackedScan MapRun::track(const Frame& frame) {
 }
 
 void MapRun::map_next(TrackedFrame& tracked,
-                      const std::function<void(const MapProgress&)>& progress) {
+                      const std::function<void(const RunProgress&)>& progress) {
   const auto* frame = std::get_if<Frame>(&tracked.read.result);
   if (frame != nullptr) views_.add(frame->scan);
   keyframes_.add(tracked);

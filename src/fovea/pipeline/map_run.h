@@ -54,7 +54,7 @@ class MapRun {
   /// The frames that are not in the map yet.
   std::vector<int> remaining_frames() const;
   /// Maps the frames, or those before the drive was lost.
-  void map_frames(FrameStream& stream, const std::function<void(const MapProgress&)>& progress);
+  void map_frames(FrameStream& stream, const std::function<void(const RunProgress&)>& progress);
   /// Ends the file. InputError if no frame could be mapped.
   void finish();
   /// InputError if the drive was lost or too many of its frames are damaged. The file is complete
@@ -71,7 +71,7 @@ class MapRun {
   TrackedScan track(const Frame& frame);  // runs in the tracker's thread
   /// Whether a frame is to add nothing to the map (FrameTask::skips_texture).
   bool skips_texture(const TrackedFrame& frame);
-  void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
+  void map_next(TrackedFrame& tracked, const std::function<void(const RunProgress&)>& progress);
   void account_for(const FrameRecord& record, bool is_new);
   void checkpoint_if_due();
   void check_calibration(const TrackedFrame& tracked, FrameRecord& record);

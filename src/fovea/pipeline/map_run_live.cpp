@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/drive_fingerprint.h"
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/pipeline/drive_records.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/process_memory.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -8,12 +8,12 @@
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/scan_projection.h"
-#include "fovea/mapping/surface_samples.h"
-#include "fovea/mapping/texture.h"
 #include "fovea/mapping/view_colors.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/replaced_points.h"
 #include "fovea/pipeline/scan_geometry.h"
+#include "fovea/surface_samples.h"
+#include "fovea/texture.h"
 
 namespace fovea {
 namespace {

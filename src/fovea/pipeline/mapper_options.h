@@ -1,7 +1,7 @@
 // Options of the default method.
 #pragma once
 
-#include "fovea/mapping/foveal_region.h"
+#include "fovea/foveal_region.h"
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/mapping/registration/registration.h"
 #include "fovea/mapping/surface.h"

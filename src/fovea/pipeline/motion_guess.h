@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "fovea/geometry/sweep_motion.h"
+#include "fovea/sweep_motion.h"
 
 namespace fovea {
 

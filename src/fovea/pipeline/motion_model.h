@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/time.h"
-#include "fovea/geometry/trajectory.h"
 #include "fovea/pipeline/inertial_motion.h"
 #include "fovea/pipeline/motion_history.h"
+#include "fovea/time.h"
+#include "fovea/trajectory.h"
 
 namespace fovea {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/printable.h"
 #include "fovea/core/settings.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/config.h"
 
 namespace fovea::old_settings_test {

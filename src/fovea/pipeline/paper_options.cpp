@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -5,12 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/mapping/foveal_region.h"
-#include "fovea/mapping/ground.h"
-#include "fovea/mapping/ray_filter.h"
+#include "fovea/foveal_region.h"
+#include "fovea/ground.h"
 #include "fovea/mapping/registration/registration.h"
-#include "fovea/mapping/texture.h"
-#include "fovea/mapping/upsample.h"
+#include "fovea/ray_filter.h"
+#include "fovea/texture.h"
+#include "fovea/upsample.h"
 
 namespace fovea {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "fovea/camera.h"
 #include "fovea/core/steps.h"
-#include "fovea/geometry/camera.h"
 
 namespace fovea {
 

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/mapping/registration/keyframes.h"
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/mapping/registration/registration.h"
 #include "fovea/pipeline/frame_result.h"
 #include "fovea/pipeline/mapper_options.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/occupancy.h"
 #include "fovea/map/tile_cache.h"

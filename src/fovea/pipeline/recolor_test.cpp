@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/mapper_test_support.h"
 

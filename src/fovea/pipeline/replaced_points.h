@@ -1,7 +1,7 @@
 // Coarse points of the periphery give way to finer ones (docs/method.md 4).
 #pragma once
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/map/occupancy.h"
 #include "fovea/pipeline/dynamic_points.h"
 

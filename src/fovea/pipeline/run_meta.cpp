@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include "fovea/core/path_name.h"
-#include "fovea/core/version.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 namespace {

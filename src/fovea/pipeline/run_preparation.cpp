@@ -1,6 +1,6 @@
 #include "fovea/pipeline/run_preparation.h"
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/stored_calibration.h"
 

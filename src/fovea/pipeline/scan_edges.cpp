@@ -1,6 +1,6 @@
 #include "fovea/pipeline/scan_edges.h"
 
-#include "fovea/drive/motion_compensation.h"
+#include "fovea/deskew.h"
 #include "fovea/drive/scans/sensor_scans.h"
 #include "fovea/geometry/transform_cloud.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fovea/drive/motion_compensation.h"
+#include "fovea/deskew.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/lidar_views.h"
 

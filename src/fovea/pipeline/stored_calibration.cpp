@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recalibrated_source.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::view_check_test {
 

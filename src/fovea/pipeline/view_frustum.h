@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/map/tile_points.h"
 
 namespace fovea {

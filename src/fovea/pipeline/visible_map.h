@@ -6,9 +6,9 @@
 #include <map>
 #include <span>
 
+#include "fovea/foveal_region.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/depth_buffer.h"
-#include "fovea/mapping/foveal_region.h"
 #include "fovea/mapping/view_colors.h"
 #include "fovea/pipeline/point_in_view.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea {

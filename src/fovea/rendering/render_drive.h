@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/time.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/map/color_display.h"
 #include "fovea/map/map_store.h"
 #include "fovea/rendering/virtual_lidar.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -10,9 +10,9 @@
 
 #include "../../../tests/synthetic_drive.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/errors.h"
 #include "fovea/pipeline/map_drive.h"
 
 namespace fovea::render_drive_test {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "fovea/core/image.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
+#include "fovea/image.h"
 #include "fovea/map/color_display.h"
 #include "fovea/map/colored_points.h"
 

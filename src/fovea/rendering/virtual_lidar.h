@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/lidar_data_sheet.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/point_cloud.h"
 #include "fovea/rendering/map_window.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/core/image.h"
-#include "fovea/core/point_cloud.h"
+#include "fovea/camera.h"
 #include "fovea/core/random.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/image.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/viewer/map_description.h"
 #include "fovea/server/live_sample.h"
 

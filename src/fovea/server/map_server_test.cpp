@@ -12,7 +12,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/viewer/map_description.h"
 #include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"

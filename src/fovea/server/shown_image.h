@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/thread.h"
+#include "fovea/errors.h"
 #include "fovea/server/http_connection.h"
 #include "fovea/server/web_context.h"
 #include "fovea/server/web_socket.h"

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/server/web_client.h"
 #include "fovea/server/web_request.h"
 

@@ -5,9 +5,9 @@
 #include <functional>
 #include <vector>
 
-#include "fovea/core/image.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/geometry/lens.h"
+#include "fovea/image.h"
 #include "fovea/simulation/shading.h"
 
 namespace fovea {

@@ -1,7 +1,7 @@
 // How a rig moves that a person carries or that flies, besides the way that it follows.
 #pragma once
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 #include "fovea/simulation/simulation_options.h"
 
 namespace fovea {

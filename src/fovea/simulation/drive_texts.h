@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "fovea/core/time.h"
 #include "fovea/simulation/rig.h"
 #include "fovea/simulation/simulation_options.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

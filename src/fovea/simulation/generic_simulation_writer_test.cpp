@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_truth.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/simulate.h"
 

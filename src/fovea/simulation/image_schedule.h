@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/time.h"
 #include "fovea/simulation/simulation_options.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

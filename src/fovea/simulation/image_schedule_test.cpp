@@ -10,11 +10,11 @@
 #include <sstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_truth.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/nearest_images.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/simulate.h"
 

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/settings.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

@@ -10,11 +10,11 @@
 #include "../../../tests/file_content.h"
 #include "../../../tests/file_size_limit.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/random.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/drive_texts.h"
 
 namespace fovea::kitti_drive_writer_test {

@@ -8,7 +8,7 @@
 
 #include "fovea/core/angle.h"
 #include "fovea/core/parallel.h"
-#include "fovea/drive/motion_compensation.h"
+#include "fovea/deskew.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/test_lidar.h"
 

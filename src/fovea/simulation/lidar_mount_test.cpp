@@ -7,9 +7,9 @@
 
 #include "../../../tests/temporary_folder.h"
 #include "fovea/core/angle.h"
+#include "fovea/deskew.h"
 #include "fovea/drive/drive_truth.h"
 #include "fovea/drive/frame_source.h"
-#include "fovea/drive/motion_compensation.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/simulate.h"

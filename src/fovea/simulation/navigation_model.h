@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/time.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/simulation/rig.h"
 #include "fovea/simulation/simulation_options.h"
 #include "fovea/simulation/vehicle_motion.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

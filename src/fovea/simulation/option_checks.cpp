@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/rectified_camera.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 namespace {

@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/geometry/lens.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 #include "fovea/simulation/simulation_options.h"
 
 namespace fovea {

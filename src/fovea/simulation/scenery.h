@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 #include "fovea/simulation/palette.h"
 #include "fovea/simulation/path.h"
 #include "fovea/simulation/simulation_options.h"

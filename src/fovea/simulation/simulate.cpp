@@ -7,9 +7,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/random.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/camera_model.h"
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/image_schedule.h"

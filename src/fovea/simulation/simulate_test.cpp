@@ -7,10 +7,10 @@
 
 #include "../../../tests/file_content.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/drive_truth.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 #include "fovea/world/world_file.h"
 
 namespace fovea::simulate_test {

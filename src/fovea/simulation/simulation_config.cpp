@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/settings.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/sweep_direction_names.h"
 
 namespace fovea {

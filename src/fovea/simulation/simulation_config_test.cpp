@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::simulation_config_test {
 

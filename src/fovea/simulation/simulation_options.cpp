@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/random.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/image_schedule.h"
 #include "fovea/simulation/option_checks.h"
 #include "fovea/simulation/rig.h"

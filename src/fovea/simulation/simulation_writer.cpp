@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/drive/writers/png_encode.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/generic_simulation_writer.h"
 #include "fovea/simulation/image_schedule.h"
 #include "fovea/simulation/kitti_drive_writer.h"

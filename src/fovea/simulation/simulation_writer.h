@@ -9,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/image.h"
-#include "fovea/core/time.h"
+#include "fovea/image.h"
 #include "fovea/simulation/imu_model.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/navigation_model.h"
 #include "fovea/simulation/simulation_options.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -1,7 +1,7 @@
 // What a street looks like and where it runs.
 #pragma once
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 #include "fovea/simulation/path.h"
 #include "fovea/simulation/simulation_options.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/grid_city.h"
 #include "fovea/simulation/street_builder.h"
 #include "fovea/simulation/street_turn.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::town_route_test {
 

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/simulation/ray_caster.h"
 #include "fovea/simulation/street_scenery.h"
 #include "fovea/simulation/town_route.h"

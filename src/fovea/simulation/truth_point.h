@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 #include "fovea/simulation/carried_motion.h"
 #include "fovea/simulation/path.h"
 #include "fovea/simulation/simulation_options.h"

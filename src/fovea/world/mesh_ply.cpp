@@ -6,9 +6,9 @@
 #include <charconv>
 #include <cstring>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

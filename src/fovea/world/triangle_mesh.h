@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 

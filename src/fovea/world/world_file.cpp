@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/nesting.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 #include "fovea/world/mesh_ply.h"
 
 namespace fovea {

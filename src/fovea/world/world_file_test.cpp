@@ -7,7 +7,7 @@
 
 #include "../../../tests/file_content.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::world_file_test {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <sstream>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -5,11 +5,11 @@
 #include <bit>
 #include <cstring>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/point_formats/column_names.h"
 #include "fovea/core/point_formats/lzf.h"
 #include "fovea/core/point_formats/pcd_header.h"
 #include "fovea/core/read_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

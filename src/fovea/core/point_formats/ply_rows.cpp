@@ -7,9 +7,9 @@
 #include <sstream>
 #include <string>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/point_formats/column_names.h"
 #include "fovea/core/read_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::bridge {
 namespace {

@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "fovea/core/errors.h"
-#include "fovea/core/time.h"
+#include "fovea/errors.h"
+#include "fovea/time.h"
 
 namespace fovea::bridge {
 

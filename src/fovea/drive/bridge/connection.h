@@ -9,8 +9,8 @@
 #include <stop_token>
 #include <string>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/bridge/bridge_address.h"
+#include "fovea/errors.h"
 
 namespace fovea::bridge {
 

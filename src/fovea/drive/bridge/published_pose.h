@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "fovea/core/time.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
+#include "fovea/time.h"
 
 namespace fovea::bridge {
 

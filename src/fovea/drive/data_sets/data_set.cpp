@@ -11,7 +11,7 @@ namespace fovea {
 
 void add_scan(const std::filesystem::path& file, TimeNs stamp, const LidarScan& scan,
               const std::vector<DriveImage>& images,
-              const std::optional<RigidMotion>& T_world_lidar, DriveWriter& writer) {
+              const std::optional<RigidMotion>& T_world_lidar, AdapterWriter& writer) {
   try {
     writer.add({stamp, scan.points}, images, T_world_lidar);
   } catch (const std::invalid_argument& error) {

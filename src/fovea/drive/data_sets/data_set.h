@@ -1,4 +1,4 @@
-// Data sets as drives: one adapter for each, on top of DriveWriter.
+// Data sets as drives: one adapter for each, on top of AdapterWriter.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/messages.h"
 #include "fovea/drive/writers/drive_writer.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 
@@ -36,11 +36,11 @@ struct DataSetOptions {
 /// Its notes name what is left out, and why.
 struct DataSetFigures : Messages, DriveWriterFigures {};
 
-/// DriveWriter::add() for a scan from a file. What the writer refuses is the fault of the data set:
-/// InputError that names the file.
+/// AdapterWriter::add() for a scan from a file. What the writer refuses is the fault of the data
+/// set: InputError that names the file.
 void add_scan(const std::filesystem::path& file, TimeNs stamp, const LidarScan& scan,
               const std::vector<DriveImage>& images,
-              const std::optional<RigidMotion>& T_world_lidar, DriveWriter& writer);
+              const std::optional<RigidMotion>& T_world_lidar, AdapterWriter& writer);
 
 /// The scene that the options choose: the one that `is_named` accepts, or the only one. ConfigError
 /// that lists all otherwise.
@@ -50,7 +50,7 @@ std::string choose_scene(std::vector<std::string> names, const DataSetOptions& o
 /// nuScenes (nuscenes.org/nuscenes#data-format): LIDAR_TOP, the six cameras and the poses of a
 /// scene. The adapter reads the tables in ROOT/v1.0-* and the files that they name.
 /// InputError for tables and files that are missing or damaged, and for an unknown scene;
-/// OutputError as DriveWriter.
+/// OutputError as AdapterWriter.
 DataSetFigures convert_nuscenes(const DataSetOptions& options);
 /// Names of the scenes, sorted.
 std::vector<std::string> nuscenes_scenes(const std::filesystem::path& root);

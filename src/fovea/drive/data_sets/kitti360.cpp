@@ -4,12 +4,12 @@
 
 #include <map>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/data_sets/data_set.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/kitti/kitti_scan.h"
 #include "fovea/drive/time_stamps.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea {
@@ -155,7 +155,7 @@ DataSetFigures convert_kitti360(const DataSetOptions& options) {
   for (const RecordedCamera& camera : calibration.cameras) {
     images.emplace_back(options.root / "data_2d_raw" / sequence / camera.name, "data_rect", ".png");
   }
-  DriveWriter writer(options.output, calibration.cameras, {options.force, false, {}});
+  AdapterWriter writer(options.output, calibration.cameras, {options.force, false, {}});
   DataSetFigures figures;
   DroppedPoints dropped;
   std::optional<TimeNs> first;

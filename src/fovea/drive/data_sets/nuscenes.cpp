@@ -9,10 +9,10 @@
 #include <set>
 #include <string_view>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/drive/data_sets/data_set.h"
 #include "fovea/drive/kitti/kitti_scan.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {
@@ -120,7 +120,7 @@ class Scene {
       const int number = place == kCameras.end() ? further++ : int(place - kCameras.begin());
       cameras.push_back(camera_of(channel, number, images));
     }
-    DriveWriter writer(options_.output, cameras, {options_.force, false, kSweep});
+    AdapterWriter writer(options_.output, cameras, {options_.force, false, kSweep});
     std::map<std::string, std::size_t> next;  // image, by channel
     DataSetFigures figures;
     DroppedPoints dropped;

@@ -4,9 +4,9 @@
 
 #include "../../../../tests/miniature_data_sets.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/data_sets/data_set.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 
 namespace fovea::nuscenes_test {
 

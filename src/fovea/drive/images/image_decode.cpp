@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/images/jpeg_decode.h"
 #include "fovea/drive/images/png_decode.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "../../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::image_decode_test {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/image.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/geometry/lens.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

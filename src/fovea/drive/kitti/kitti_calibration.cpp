@@ -6,11 +6,11 @@
 #include <cmath>
 #include <string>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/plausible.h"
 #include "fovea/drive/plausible_lens.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 
 namespace fovea {
 

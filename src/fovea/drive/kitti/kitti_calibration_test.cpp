@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "../../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::kitti_calibration_test {
 

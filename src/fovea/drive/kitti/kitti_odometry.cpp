@@ -1,11 +1,11 @@
 // KITTI odometry sequences: sequences/NN.
 #include <fmt/format.h>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/kitti/kitti_drives.h"
 #include "fovea/drive/plausible_lens.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "../../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 
 namespace fovea::kitti_odometry_test {
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/kitti/kitti_drives.h"
 #include "fovea/drive/navigation/imu_table.h"
 #include "fovea/drive/navigation/navigation.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

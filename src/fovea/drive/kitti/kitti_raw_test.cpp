@@ -4,8 +4,8 @@
 #include <thread>
 
 #include "../../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/errors.h"
 
 namespace fovea::kitti_raw_test {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "fovea/core/parallel.h"
+#include "fovea/deskew.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/kitti/oxts.h"
-#include "fovea/drive/motion_compensation.h"
 
 namespace fovea::kitti_sample_test {
 

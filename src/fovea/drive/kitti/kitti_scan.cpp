@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/point_formats/column_names.h"
 #include "fovea/drive/scans/point_layout.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "../../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::kitti_scan_test {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/measured_velocity.h"
 #include "fovea/drive/plausible.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

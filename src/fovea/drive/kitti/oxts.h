@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "fovea/geometry/geodesy.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <pugixml.hpp>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/calibrated_drive.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

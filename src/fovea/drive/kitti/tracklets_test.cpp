@@ -8,7 +8,7 @@
 
 #include "../../../../tests/temporary_folder.h"
 #include "../../../../tests/tracklet_writer.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::tracklets_test {
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <map>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/described_camera.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/lidar_scans.h"
 #include "fovea/drive/live/scan_points.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

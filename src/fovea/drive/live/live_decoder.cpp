@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/frame_parts.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/live/scan_points.h"
 #include "fovea/drive/scans/sensor_scans.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

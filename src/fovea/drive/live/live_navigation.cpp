@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/live/recorded_rows.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -5,11 +5,11 @@
 #include <exception>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
 #include "fovea/core/read_file.h"
 #include "fovea/core/thread.h"
 #include "fovea/drive/writers/motion_tables.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "../../../../tests/file_size_limit.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/live/test_live_run.h"
+#include "fovea/errors.h"
 
 namespace fovea::live_recorder_test {
 

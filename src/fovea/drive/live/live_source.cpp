@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/live/first_frames.h"
 #include "fovea/drive/live/live_input.h"
 #include "fovea/drive/live/live_recorder.h"
 #include "fovea/drive/live/live_waits.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/live/test_live_run.h"
+#include "fovea/errors.h"
 
 namespace fovea::live_source_test {
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <optional>
 
-#include "fovea/core/time.h"
 #include "fovea/drive/live/sensor_stamps.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/scans/scan_columns.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

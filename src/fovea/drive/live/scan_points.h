@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/core/point_formats/cloud_rows.h"
 #include "fovea/drive/scans/lidar_scan.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

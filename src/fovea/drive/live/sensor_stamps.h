@@ -5,7 +5,7 @@
 #include <deque>
 #include <optional>
 
-#include "fovea/core/time.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

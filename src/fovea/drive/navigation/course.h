@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/eigen_alignment.h"
-#include "fovea/core/time.h"
+#include "fovea/platform.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
 #include "fovea/drive/navigation/gnss_table.h"
 #include "fovea/drive/navigation/navigation_columns.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/position_limit.h"
 
 namespace fovea {

@@ -11,7 +11,7 @@
 #include "fovea/drive/scans/csv_rows.h"
 #include "fovea/drive/stamp_units.h"
 #include "fovea/geometry/geodesy.h"
-#include "fovea/geometry/trajectory.h"
+#include "fovea/trajectory.h"
 
 namespace fovea {
 

@@ -7,11 +7,11 @@
 #include <limits>
 #include <numbers>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/navigation/course.h"
 #include "fovea/drive/navigation/navigation.h"
 #include "fovea/drive/navigation/navigation_columns.h"
 #include "fovea/drive/plausible.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

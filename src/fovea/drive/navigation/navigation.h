@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/time.h"
 #include "fovea/drive/kitti/oxts.h"
 #include "fovea/geometry/geodesy.h"
-#include "fovea/geometry/trajectory.h"
+#include "fovea/time.h"
+#include "fovea/trajectory.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fovea/geometry/geodesy.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

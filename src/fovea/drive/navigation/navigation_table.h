@@ -10,7 +10,7 @@
 
 #include "fovea/core/messages.h"
 #include "fovea/drive/scans/csv_rows.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
 #include "fovea/core/input_file.h"
 #include "fovea/drive/recordings/decompress.h"
 #include "fovea/drive/recordings/mcap_file.h"
 #include "fovea/drive/recordings/ros1_bag.h"
 #include "fovea/drive/recordings/sqlite_bag.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

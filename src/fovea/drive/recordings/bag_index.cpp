@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/bag.h"
 #include "fovea/drive/recordings/bag_indexer.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/stable_order.h"
 #include "fovea/drive/recordings/pixels.h"
 #include "fovea/drive/recordings/scan_message.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

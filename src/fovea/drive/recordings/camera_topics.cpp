@@ -7,11 +7,11 @@
 #include <optional>
 #include <tuple>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/recordings/pixels.h"
 #include "fovea/drive/recordings/place_on_vehicle.h"
 #include "fovea/drive/recordings/sensor_name.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/bag.h"
 #include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/conversion_plan.h"
 #include "fovea/drive/recordings/missing_messages.h"
 #include "fovea/drive/recordings/recording_writer.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

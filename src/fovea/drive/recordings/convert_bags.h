@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "fovea/core/messages.h"
-#include "fovea/core/time.h"
 #include "fovea/drive/recordings/convert_options.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -7,11 +7,11 @@
 
 #include "../../../../tests/mcap_writer.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/recordings/ros_messages.h"
 #include "fovea/drive/recordings/test_messages.h"
+#include "fovea/errors.h"
 
 namespace fovea::convert_bags_test {
 

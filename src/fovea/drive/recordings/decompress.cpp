@@ -12,9 +12,9 @@
 #include <memory>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

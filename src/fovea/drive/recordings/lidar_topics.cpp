@@ -4,12 +4,12 @@
 
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/only_topic.h"
 #include "fovea/drive/recordings/place_on_vehicle.h"
 #include "fovea/drive/recordings/sensor_name.h"
 #include "fovea/drive/recordings/velodyne_scan.h"
 #include "fovea/drive/scans/recognized_format.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/pixels.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

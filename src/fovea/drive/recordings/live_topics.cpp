@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/scan_message.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "../../../../tests/mcap_writer.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/convert_bags.h"
 #include "fovea/drive/recordings/test_messages.h"
+#include "fovea/errors.h"
 
 namespace fovea::live_topics_test {
 

@@ -6,11 +6,11 @@
 #include <map>
 #include <optional>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/printable.h"
 #include "fovea/drive/recordings/bag_stream.h"
 #include "fovea/drive/recordings/decompress.h"
 #include "fovea/drive/recordings/mcap_format.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -5,10 +5,10 @@
 #include <cerrno>
 #include <limits>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
-#include "fovea/core/version.h"
 #include "fovea/drive/recordings/mcap_format.h"
+#include "fovea/errors.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <tuple>
 
-#include "fovea/core/time.h"
 #include "fovea/drive/recordings/bag_sink.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/mcap_file.h"
+#include "fovea/errors.h"
 
 namespace fovea::mcap_writer_test {
 

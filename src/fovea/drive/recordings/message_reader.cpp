@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/bag_sink.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

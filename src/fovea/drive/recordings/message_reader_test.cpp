@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "../../../../tests/cdr_writer.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/bag_sink.h"
 #include "fovea/drive/recordings/ros_messages.h"
+#include "fovea/errors.h"
 
 namespace fovea::message_reader_test {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fovea/core/time.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/only_topic.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "fovea/core/image.h"
 #include "fovea/drive/recordings/ros_messages.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

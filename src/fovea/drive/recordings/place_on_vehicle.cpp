@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

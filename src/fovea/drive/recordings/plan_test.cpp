@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/camera_topics.h"
 #include "fovea/drive/recordings/conversion_plan.h"
 #include "fovea/drive/recordings/navigation_topics.h"
 #include "fovea/drive/recordings/scan_message.h"
+#include "fovea/errors.h"
 
 namespace fovea::plan_test {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/point_formats/column_names.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/scans/recognized_format.h"
+#include "fovea/errors.h"
 
 namespace fovea::point_cloud_rows_test {
 

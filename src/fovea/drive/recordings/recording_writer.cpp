@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/pixels.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/printable.h"
 #include "fovea/drive/recordings/bag_stream.h"
 #include "fovea/drive/recordings/decompress.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -10,9 +10,9 @@
 #include "../../../../tests/lz4_frame.h"
 #include "../../../../tests/ros1_bag_writer.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/bag.h"
 #include "fovea/drive/recordings/decompress.h"
+#include "fovea/errors.h"
 
 namespace fovea::ros1_bag_test {
 

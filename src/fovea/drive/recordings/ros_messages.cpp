@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::ros {
 namespace {

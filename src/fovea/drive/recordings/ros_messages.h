@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/time.h"
 #include "fovea/drive/recordings/message_reader.h"
 #include "fovea/geometry/quaternion_motion.h"
+#include "fovea/time.h"
 
 namespace fovea::ros {
 

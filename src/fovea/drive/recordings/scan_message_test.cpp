@@ -8,10 +8,10 @@
 
 #include "../../../../tests/cdr_writer.h"
 #include "../../../../tests/mcap_writer.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/bag_sink.h"
 #include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/drive/scans/recognized_format.h"
+#include "fovea/errors.h"
 
 namespace fovea::scan_message_test {
 

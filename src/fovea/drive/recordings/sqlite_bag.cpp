@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/sqlite_database.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

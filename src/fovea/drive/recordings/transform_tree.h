@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/time.h"
 #include "fovea/geometry/quaternion_motion.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -10,8 +10,8 @@
 #include <cstring>
 #include <numbers>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/named_rows.h"
+#include "fovea/errors.h"
 
 namespace fovea::ros {
 namespace {

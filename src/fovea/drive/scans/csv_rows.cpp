@@ -12,11 +12,11 @@
 #include <string_view>
 #include <utility>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
 #include "fovea/core/point_formats/column_names.h"
 #include "fovea/core/read_file.h"
 #include "fovea/drive/time_stamps.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/time.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "../../../../tests/kitti_test_drive.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::csv_rows_test {
 

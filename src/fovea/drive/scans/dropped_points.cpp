@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <string>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/point_formats/pcd_rows.h"
 #include "fovea/core/point_formats/ply_rows.h"
 #include "fovea/drive/kitti/kitti_scan.h"
 #include "fovea/drive/scans/scan_columns.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

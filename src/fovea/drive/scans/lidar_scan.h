@@ -11,12 +11,12 @@
 
 #include "fovea/core/file_format.h"
 #include "fovea/core/input_file.h"
-#include "fovea/core/point_cloud.h"
 #include "fovea/core/point_formats/cloud_rows.h"
-#include "fovea/core/time.h"
 #include "fovea/drive/scans/dropped_points.h"
 #include "fovea/drive/scans/scan_format.h"
 #include "fovea/drive/scans/scan_numbers.h"
+#include "fovea/point_cloud.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

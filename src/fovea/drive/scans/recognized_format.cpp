@@ -7,11 +7,11 @@
 #include <array>
 #include <set>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/median.h"
 #include "fovea/core/point_formats/column_names.h"
 #include "fovea/drive/scans/point_times.h"
 #include "fovea/drive/scans/scan_columns.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

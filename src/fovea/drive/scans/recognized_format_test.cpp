@@ -7,8 +7,8 @@
 #include <cmath>
 #include <functional>
 
-#include "fovea/core/errors.h"
 #include "fovea/drive/scans/scan_columns.h"
+#include "fovea/errors.h"
 
 namespace fovea::recognized_format_test {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "fovea/core/point_formats/cloud_rows.h"
-#include "fovea/core/time.h"
 #include "fovea/drive/scans/intensity_scale.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/sensor_profile.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -5,12 +5,12 @@
 #include <set>
 #include <stdexcept>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/plain_name.h"
 #include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/drive/writers/png_encode.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea {
@@ -43,8 +43,8 @@ LidarScan usable_points(const PointCloud& points) {
 
 }  // namespace
 
-DriveWriter::DriveWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
-                         DriveWriterOptions options)
+AdapterWriter::AdapterWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
+                             DriveWriterOptions options)
     : writer_(root, options.force) {
   drive_.lidar.sweep_compensated = options.sweep_compensated;
   drive_.lidar.sweep = options.sweep;
@@ -72,8 +72,8 @@ DriveWriter::DriveWriter(const std::filesystem::path& root, std::vector<Recorded
   }
 }
 
-void DriveWriter::add(const DriveScan& scan, const std::vector<DriveImage>& images,
-                      const std::optional<RigidMotion>& T_world_lidar) {
+void AdapterWriter::add(const DriveScan& scan, const std::vector<DriveImage>& images,
+                        const std::optional<RigidMotion>& T_world_lidar) {
   require(!is_closed_, "the drive is closed");
   std::map<std::string, TimeNs> last;
   std::vector<EncodedImage> files;
@@ -88,7 +88,7 @@ void DriveWriter::add(const DriveScan& scan, const std::vector<DriveImage>& imag
   if (pose) drive_.poses.push_back({scan.stamp, *pose});
 }
 
-void DriveWriter::add_scan(const std::string& lidar, const DriveScan& scan) {
+void AdapterWriter::add_scan(const std::string& lidar, const DriveScan& scan) {
   require(!is_closed_, "the drive is closed");
   const auto found = lidars_.find(lidar);
   require(found != lidars_.end() && lidar != drive_.lidar.name,
@@ -96,13 +96,13 @@ void DriveWriter::add_scan(const std::string& lidar, const DriveScan& scan) {
   write_scan(lidar, found->second, scan);
 }
 
-DriveWriter::CameraState& DriveWriter::find_camera(const std::string& name) {
+AdapterWriter::CameraState& AdapterWriter::find_camera(const std::string& name) {
   const auto found = cameras_.find(name);
   require(found != cameras_.end(), "the drive has no camera '{}'", name);
   return found->second;
 }
 
-void DriveWriter::check_image(const DriveImage& image, std::map<std::string, TimeNs>& last) {
+void AdapterWriter::check_image(const DriveImage& image, std::map<std::string, TimeNs>& last) {
   const CameraState& state = find_camera(image.camera);
   if (state.last) last.try_emplace(image.camera, *state.last);
   const auto before = last.find(image.camera);
@@ -117,7 +117,7 @@ void DriveWriter::check_image(const DriveImage& image, std::map<std::string, Tim
   }
 }
 
-DriveWriter::EncodedImage DriveWriter::encoded(const DriveImage& image) {
+AdapterWriter::EncodedImage AdapterWriter::encoded(const DriveImage& image) {
   if (const auto* pixels = std::get_if<Image>(&image.content)) return {encode_png(*pixels), ".png"};
   const auto& path = std::get<std::filesystem::path>(image.content);
   std::vector<std::uint8_t> bytes = InputFile(path, kImageFile).bytes();
@@ -129,7 +129,7 @@ DriveWriter::EncodedImage DriveWriter::encoded(const DriveImage& image) {
   return {std::move(bytes), format == FileFormat::kPng ? ".png" : ".jpg"};
 }
 
-void DriveWriter::write_scan(const std::string& name, LidarState& lidar, const DriveScan& scan) {
+void AdapterWriter::write_scan(const std::string& name, LidarState& lidar, const DriveScan& scan) {
   require(!lidar.last || scan.stamp > *lidar.last,
           "the scan at {} ns is not after the one at {} ns", scan.stamp, lidar.last.value_or(0));
   const LidarScan usable = usable_points(scan.points);
@@ -140,7 +140,7 @@ void DriveWriter::write_scan(const std::string& name, LidarState& lidar, const D
   lidar.last = scan.stamp;
 }
 
-void DriveWriter::write_image(const DriveImage& image, const EncodedImage& file) {
+void AdapterWriter::write_image(const DriveImage& image, const EncodedImage& file) {
   CameraState& state = find_camera(image.camera);
   const std::string_view bytes(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   writer_.write_encoded_image(image.camera, state.images, image.stamp, bytes, file.extension);
@@ -149,7 +149,7 @@ void DriveWriter::write_image(const DriveImage& image, const EncodedImage& file)
   state.last = image.stamp;
 }
 
-DriveWriterFigures DriveWriter::close() {
+DriveWriterFigures AdapterWriter::close() {
   if (is_closed_) throw std::logic_error("the drive is closed already");
   if (scans() == 0) throw std::logic_error("the drive has no scan");
   is_closed_ = true;

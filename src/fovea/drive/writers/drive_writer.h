@@ -1,6 +1,6 @@
 // Writes a drive frame by frame (docs/drives.md, "Other data sets"): the base of an adapter.
 //
-//     DriveWriter writer("drive", {{"front", 0, optics, T_lidar_cam}});
+//     AdapterWriter writer("drive", {{"front", 0, optics, T_lidar_cam}});
 //     for (const MyFrame& f : frames) {
 //       writer.add({f.stamp, f.points}, {{"front", f.image_stamp, f.image_file}}, f.T_world_lidar);
 //     }
@@ -14,37 +14,15 @@
 #include <variant>
 #include <vector>
 
-#include "fovea/core/image.h"
-#include "fovea/core/point_cloud.h"
+#include "fovea/drive.h"
 #include "fovea/drive/scans/dropped_points.h"
 #include "fovea/drive/scans/intensity_scale.h"
 #include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
+#include "fovea/image.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
-
-struct DriveScan {
-  TimeNs stamp = 0;
-  /// LiDAR frame, m. Each of these columns may be empty: intensity (up to 1, 255 or 65535), time (s
-  /// from the stamp), ring.
-  PointCloud points;
-};
-
-struct DriveImage {
-  std::string camera;  ///< its name
-  TimeNs stamp = 0;
-  std::variant<Image, std::filesystem::path> content;  ///< a PNG or JPEG file is copied as it is
-};
-
-struct DriveWriterOptions {
-  bool force = false;                ///< replaces a drive at that place
-  bool sweep_compensated = false;    ///< the motion of the LiDAR during a sweep is undone already
-  std::optional<SweepTiming> sweep;  ///< of points without times
-  /// T_lidar_sensor of further LiDARs by name. Scans of all LiDARs have points with times then, or
-  /// the timing of `sweep`.
-  std::map<std::string, RigidMotion> further_lidars = {};
-  std::string first_lidar = "first";  ///< name of the first LiDAR if there are further ones
-};
 
 struct DriveWriterFigures {
   std::size_t scans = 0;  ///< of all LiDARs
@@ -53,12 +31,12 @@ struct DriveWriterFigures {
 };
 
 /// Every function throws OutputError as GenericDriveWriter. Without close() nothing stays.
-class DriveWriter {
+class AdapterWriter {
  public:
   /// std::invalid_argument for cameras of one name or number, LiDARs of one name, or a name that
   /// RecordedCamera or RecordedLidar does not allow.
-  DriveWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
-              DriveWriterOptions options = {});
+  AdapterWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
+                DriveWriterOptions options = {});
 
   /// Adds the next frame, or nothing if it throws. Images belong to their stamps: a frame may have
   /// any number of them.

@@ -8,9 +8,9 @@
 #include <functional>
 
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/writers/png_encode.h"
+#include "fovea/errors.h"
 
 namespace fovea::drive_writer_test {
 
@@ -51,7 +51,7 @@ RigidMotion pose(int frame) {
 
 class DriveWriterTest : public testing::Test {
  protected:
-  DriveWriter writer(const std::vector<RecordedCamera>& cameras = {front()}) {
+  AdapterWriter writer(const std::vector<RecordedCamera>& cameras = {front()}) {
     return {folder_ / "drive", cameras};
   }
   TemporaryFolder folder_;
@@ -62,7 +62,7 @@ TEST_F(DriveWriterTest, TheDriveHasWhatWasAdded) {
   const std::vector<std::uint8_t> png = encode_png(image(70));
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
-  DriveWriter writer = this->writer();
+  AdapterWriter writer = this->writer();
   writer.add({kStart, points(3)}, {{"front", kStart + 1, image(40)}}, pose(0));
   PointCloud with_nan = points(4);
   with_nan.position[2].x() = std::nanf("");
@@ -96,7 +96,7 @@ TEST_F(DriveWriterTest, SeveralLidarsHaveScansOfTheirOwn) {
   DriveWriterOptions options;
   options.first_lidar = "top";
   options.further_lidars["left"] = pose(1);
-  DriveWriter writer(folder_ / "drive", {}, options);
+  AdapterWriter writer(folder_ / "drive", {}, options);
   for (int frame = 0; frame < 3; ++frame) {
     writer.add({kStart + frame * kStep, points(3)}, {});
     if (frame > 0) writer.add_scan("left", {kStart + frame * kStep + 1'000'000, points(5)});
@@ -117,25 +117,25 @@ TEST_F(DriveWriterTest, SeveralLidarsHaveScansOfTheirOwn) {
             1e-5);
   EXPECT_EQ(std::get<Frame>(drive->load(0)).missing_scans.size(), 1u);
 
-  DriveWriter without_left(folder_ / "without", {}, options);
+  AdapterWriter without_left(folder_ / "without", {}, options);
   without_left.add({kStart, points(3)}, {});
   without_left.close();
   EXPECT_EQ(std::get<Frame>(open_drive(folder_ / "without", {})->load(0)).scan.size(), 5u);
 
   options.first_lidar = "left";
-  EXPECT_THROW(DriveWriter(folder_ / "other", {}, options), std::invalid_argument);
+  EXPECT_THROW(AdapterWriter(folder_ / "other", {}, options), std::invalid_argument);
 }
 
 TEST_F(DriveWriterTest, WithoutCloseNothingStays) {
   {
-    DriveWriter writer = this->writer();
+    AdapterWriter writer = this->writer();
     writer.add({kStart, points(3)}, {});
   }
   EXPECT_THAT(folder_.names(), IsEmpty());
 }
 
 TEST_F(DriveWriterTest, RefusesWhatIsNoFrame) {
-  DriveWriter writer = this->writer();
+  AdapterWriter writer = this->writer();
   writer.add({kStart, points(3)}, {{"front", kStart, image(1)}});
   const auto refuses = [&](const DriveScan& scan, const std::vector<DriveImage>& images,
                            const std::optional<RigidMotion>& T_world_lidar = std::nullopt) {
@@ -173,7 +173,7 @@ TEST_F(DriveWriterTest, RefusesCamerasThatAreNone) {
   EXPECT_THROW(writer({front(), other}), std::invalid_argument);
   other.index = 3, other.name = "../rear";
   EXPECT_THROW(writer({front(), other}), std::invalid_argument);
-  DriveWriter empty = writer();
+  AdapterWriter empty = writer();
   EXPECT_THROW(empty.close(), std::logic_error);
 }
 

@@ -10,16 +10,16 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/core/image.h"
 #include "fovea/core/output_folder.h"
-#include "fovea/core/point_cloud.h"
-#include "fovea/core/time.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/imu_data.h"
 #include "fovea/geometry/lens.h"
 #include "fovea/geometry/quaternion_motion.h"
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/geometry/sensor_profile.h"
+#include "fovea/image.h"
+#include "fovea/point_cloud.h"
+#include "fovea/rigid_motion.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/core/output_folder.h"
 #include "fovea/core/read_file.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/city/city_tileset_json.h"
 #include "fovea/exporting/tileset/glb.h"
 #include "fovea/exporting/tileset/glb_reader.h"

@@ -9,7 +9,7 @@
 #include "../../../../tests/file_content.h"
 #include "../../../../tests/sample_city.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/city/city_description.h"
 #include "fovea/exporting/city/tile_overview.h"
 #include "fovea/exporting/tileset/glb_reader.h"

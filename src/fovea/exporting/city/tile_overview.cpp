@@ -1,7 +1,7 @@
 #include "fovea/exporting/city/tile_overview.h"
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/tileset/glb.h"
 #include "fovea/exporting/tileset/node_points.h"
 

@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/core/scratch_file.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/mesh/mesh_gltf.h"
 
 namespace fovea {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/mesh/surface_nets.h"
 #include "fovea/exporting/tileset/tile_tree.h"
 

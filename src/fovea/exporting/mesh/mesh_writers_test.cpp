@@ -8,8 +8,8 @@
 #include "../../../../tests/file_size_limit.h"
 #include "../../../../tests/sample_map.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
 

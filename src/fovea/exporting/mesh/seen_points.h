@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 
 namespace fovea {
 

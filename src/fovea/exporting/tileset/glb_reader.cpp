@@ -12,7 +12,7 @@
 #include <string>
 
 #include "fovea/core/angle.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/gltf.h"
 #include "fovea/exporting/tileset/glb.h"
 #include "fovea/map/point_files/point_source.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/tileset/glb.h"
 
 namespace fovea::glb_reader_test {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 
 namespace fovea {

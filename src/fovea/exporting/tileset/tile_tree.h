@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/map_store.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

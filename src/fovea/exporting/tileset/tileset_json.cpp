@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "fovea/core/version.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 namespace {

@@ -11,7 +11,7 @@
 #include "../../../../tests/file_size_limit.h"
 #include "../../../../tests/sample_map.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/exporting/tileset/glb.h"
 
 namespace fovea::tileset_writer_test {

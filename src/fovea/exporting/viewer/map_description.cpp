@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fovea/core/errors.h"
-#include "fovea/core/point_reason.h"
-#include "fovea/core/version.h"
+#include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
+#include "fovea/platform.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_meta.h"
 

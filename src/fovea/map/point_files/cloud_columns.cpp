@@ -1,6 +1,6 @@
 #include "fovea/map/point_files/cloud_columns.h"
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -3,9 +3,9 @@
 #include <cctype>
 #include <string>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
 #include "fovea/core/input_file.h"
+#include "fovea/errors.h"
 #include "fovea/map/point_files/las_reader.h"
 #include "fovea/map/point_files/pcd_reader.h"
 #include "fovea/map/point_files/ply_reader.h"

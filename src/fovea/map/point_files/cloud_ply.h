@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "fovea/core/point_cloud.h"
+#include "fovea/point_cloud.h"
 
 namespace fovea {
 

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <string>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/random.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 

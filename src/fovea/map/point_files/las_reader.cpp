@@ -1,8 +1,8 @@
 #include "fovea/map/point_files/las_reader.h"
 
-#include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/point_formats/cloud_rows.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

@@ -10,11 +10,11 @@
 #include <string>
 #include <unordered_map>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/gps_time.h"
 #include "fovea/core/output_file.h"
-#include "fovea/core/version.h"
+#include "fovea/errors.h"
 #include "fovea/map/point_files/point_packing.h"
+#include "fovea/platform.h"
 
 // Numbers of sections and tables are those of the LAS Specification 1.4 - R15 (ASPRS).
 namespace fovea {

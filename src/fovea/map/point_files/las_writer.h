@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "fovea/core/time.h"
 #include "fovea/map/point_files/point_stream.h"
+#include "fovea/time.h"
 
 namespace fovea {
 

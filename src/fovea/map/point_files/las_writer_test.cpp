@@ -11,7 +11,7 @@
 #include "../../../../tests/file_size_limit.h"
 #include "../../../../tests/sample_map.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 
 namespace fovea::las_writer_test {

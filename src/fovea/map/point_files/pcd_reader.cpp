@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "fovea/core/errors.h"
 #include "fovea/core/point_formats/pcd_rows.h"
+#include "fovea/errors.h"
 
 namespace fovea {
 namespace {

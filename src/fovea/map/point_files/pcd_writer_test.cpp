@@ -10,7 +10,7 @@
 
 #include "../../../../tests/sample_map.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 
 namespace fovea::pcd_writer_test {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "fovea/core/version.h"
 #include "fovea/map/point_files/point_packing.h"
+#include "fovea/platform.h"
 
 namespace fovea {
 namespace {

@@ -9,9 +9,9 @@
 #include "../../../../tests/file_size_limit.h"
 #include "../../../../tests/sample_map.h"
 #include "../../../../tests/temporary_folder.h"
-#include "fovea/core/errors.h"
-#include "fovea/core/version.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/platform.h"
 
 namespace fovea::ply_writer_test {
 

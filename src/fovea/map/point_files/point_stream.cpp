@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/errors.h"
+#include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
 
 namespace fovea {

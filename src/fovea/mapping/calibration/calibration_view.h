@@ -4,9 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/image.h"
-#include "fovea/core/image_mask.h"
 #include "fovea/geometry/pose_spline.h"
+#include "fovea/image.h"
 #include "fovea/mapping/calibration/camera_correction.h"
 #include "fovea/mapping/calibration/edge_profiles.h"
 #include "fovea/mapping/calibration/lidar_edges.h"

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "fovea/geometry/camera.h"
+#include "fovea/camera.h"
 
 namespace fovea {
 

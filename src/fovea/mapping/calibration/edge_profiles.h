@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/image.h"
 #include "fovea/mapping/calibration/camera_correction.h"
 #include "fovea/mapping/calibration/lidar_edges.h"
 

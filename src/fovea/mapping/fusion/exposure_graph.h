@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/core/log_color.h"
+#include "fovea/color.h"
 
 namespace fovea {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fovea/geometry/trajectory.h"
 #include "fovea/mapping/fusion/pose_graph.h"
+#include "fovea/trajectory.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

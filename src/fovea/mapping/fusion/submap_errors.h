@@ -1,7 +1,7 @@
 // Standard deviations of the relative poses of submaps.
 #pragma once
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "fovea/geometry/point_index.h"
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/mapping/registration/normals.h"
 #include "fovea/mapping/registration/registration.h"
 #include "fovea/mapping/registration/voxel_queues.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
 

@@ -5,15 +5,9 @@
 
 #include "fovea/mapping/registration/pair_equations.h"
 #include "fovea/mapping/registration/registration_policies.h"
+#include "fovea/registration.h"
 
 namespace fovea {
-
-/// An estimate of the pose that does not use the scan.
-struct PosePrior {
-  RigidMotion T_target_source = RigidMotion::Identity();
-  /// Standard deviations of a twist of the source about its own origin: rad, m.
-  Twist sigma = Twist::Ones();
-};
 
 struct OptimizerOptions {
   double robust_width = 0;           ///< Geman-McClure width (m), 0: off

@@ -6,19 +6,10 @@
 #include <cstddef>
 #include <utility>
 
-#include "fovea/geometry/rigid_motion.h"
 #include "fovea/mapping/registration/pair_equations.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea {
-
-/// The policies in use. All are on by default. Tests and measurements switch single ones off.
-/// Without a robust kernel only the pair cache has an effect.
-struct RegistrationPolicies {
-  bool narrowing_kernel = true;
-  bool coarse_phase = true;
-  bool pair_cache = true;
-  bool aitken_acceleration = true;
-};
 
 /// A step is small if its rotation and its translation are both below these limits.
 struct StepLimit {

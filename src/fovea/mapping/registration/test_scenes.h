@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fovea/core/random.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/rigid_motion.h"
 
 namespace fovea::test {
 

@@ -1,0 +1,44 @@
+// Maps in forms that other programs read.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/platform.h"
+
+namespace fovea {
+
+struct ExportOptions {
+  /// "ply", "pcd", "las", "3dtiles" (a folder), "mesh" (a folder), "glb", "frames" (CSV) or
+  /// "kitti-poses"; empty: by the ending of the output.
+  std::string format;
+  std::string crs;                 ///< "local", "utm" or "ecef"; empty: local
+  std::string where;               ///< "views >= 2 and range < 10"; empty: all points
+  std::string exposure = "auto";   ///< "auto", "map", "frame:N" or stops above that of the map
+  bool include_uncolored = false;  ///< also points that no camera saw, in gray
+  bool double_positions = false;   ///< PLY and PCD
+  int color_depth = 8;             ///< bits of a channel, 8 or 16; PLY, PCD and LAS
+  double voxel = 0.05;             ///< mesh and glb: about the edge of the finest triangles, m
+  std::optional<double> utc_offset = {};  ///< LAS: h that the drive's clock is ahead of UTC
+  bool force = false;                     ///< replaces the output
+};
+
+struct ExportedMap {
+  std::size_t points = 0;  ///< or vertices of the points that a mesh was made of
+  std::size_t uncolored_left_out = 0, filtered_out = 0;
+  std::size_t tiles = 0;      ///< of a tileset
+  std::size_t triangles = 0;  ///< of a mesh
+};
+
+/// Writes a map in another form (docs/exports.md).
+/// @throws ConfigError  for an option that there is not
+/// @throws InputError   if the map is missing or damaged, or lacks the coordinates that are wanted
+/// @throws OutputError  if the output exists, except with `force`, or cannot be written
+FOVEA_API ExportedMap export_map(const std::filesystem::path& map,
+                                 const std::filesystem::path& output,
+                                 const ExportOptions& options = {});
+
+}  // namespace fovea

@@ -1,0 +1,111 @@
+#include "fovea/export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "fovea/drive/command_files.h"
+#include "fovea/errors.h"
+#include "fovea/exporting/frame_table.h"
+#include "fovea/exporting/mesh/mesh_file_writer.h"
+#include "fovea/exporting/mesh/mesh_tileset_writer.h"
+#include "fovea/exporting/pose_writer.h"
+#include "fovea/exporting/tileset/tileset_writer.h"
+#include "fovea/map/map_store.h"
+#include "fovea/map/point_files/las_writer.h"
+#include "fovea/map/point_files/pcd_writer.h"
+#include "fovea/map/point_files/ply_writer.h"
+#include "fovea/time.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::array<std::string_view, 8> kFormats = {"ply",  "pcd", "las",    "3dtiles",
+                                                      "mesh", "glb", "frames", "kitti-poses"};
+
+std::string format_of(const std::filesystem::path& output, const ExportOptions& options) {
+  std::string format = options.format;
+  if (format.empty() && output.has_extension()) format = output.extension().string().substr(1);
+  if (std::find(kFormats.begin(), kFormats.end(), format) != kFormats.end()) return format;
+  throw ConfigError(fmt::format("there is no export format '{}'", format), output.string(),
+                    "give ExportOptions::format: ply, pcd, las, 3dtiles, mesh, glb, frames or "
+                    "kitti-poses");
+}
+
+PointChoice point_choice(const MapReader& map, const ExportOptions& options) {
+  PointChoice choice;
+  const bool has_no_color = map.size() > 0 && map.colored_size() == 0;
+  choice.include_uncolored = options.include_uncolored || has_no_color;
+  if (!options.where.empty()) choice.where = PointFilter::parse(options.where);
+  if (!options.crs.empty()) {
+    const std::optional<Crs> crs = crs_of(options.crs);
+    if (!crs) {
+      throw ConfigError(fmt::format("there is no coordinate system '{}'", options.crs),
+                        "ExportOptions::crs", "give local, utm or ecef");
+    }
+    choice.crs = *crs;
+  }
+  choice.exposure = parse_exposure(options.exposure);
+  choice.deep_colors = options.color_depth == 16;
+  return choice;
+}
+
+ExportedMap exported(const ExportFigures& figures) {
+  return {figures.points, figures.uncolored_left_out, figures.filtered_out, 0, 0};
+}
+
+ExportedMap write_mesh(const MapReader& map, const std::filesystem::path& output,
+                       const MeshOptions& options, bool is_folder) {
+  if (!is_folder) {
+    const MeshFigures figures = write_mesh_file(map, output, options);
+    ExportedMap result = exported(figures);
+    result.triangles = figures.triangles;
+    return result;
+  }
+  const MeshTilesetFigures figures = write_mesh_tileset(map, output, options, {});
+  ExportedMap result = exported(figures);
+  result.triangles = figures.triangles;
+  result.tiles = figures.tiles;
+  return result;
+}
+
+ExportedMap write_points(const MapReader& map, const std::filesystem::path& output,
+                         const std::string& format, const ExportOptions& options) {
+  const PointChoice points = point_choice(map, options);
+  if (format == "mesh" || format == "glb") {
+    return write_mesh(map, output, {points, options.voxel, options.force}, format == "mesh");
+  }
+  if (format == "las") {
+    LasOptions las{.points = points, .force = options.force};
+    if (options.utc_offset) las.utc_offset = from_seconds(3600 * *options.utc_offset);
+    return exported(write_las(map, output, las));
+  }
+  if (format == "3dtiles") {
+    const TilesetFigures figures =
+        write_tileset(map, output, {.points = points, .force = options.force});
+    ExportedMap result = exported(figures);
+    result.tiles = figures.tiles;
+    return result;
+  }
+  const auto write_file = format == "pcd" ? write_pcd : write_ply;
+  return exported(write_file(map, output, {points, options.double_positions, options.force}));
+}
+
+}  // namespace
+
+ExportedMap export_map(const std::filesystem::path& map, const std::filesystem::path& output,
+                       const ExportOptions& options) {
+  const std::string format = format_of(output, options);
+  const MapReader reader(map);
+  if (format != "frames" && format != "kitti-poses") {
+    return write_points(reader, output, format, options);
+  }
+  reader.check();  // frames need no tile
+  const auto write_frames = format == "frames" ? write_frame_table : write_kitti_poses;
+  write_frames(reader.frames(), output, options.force);
+  return {};
+}
+
+}  // namespace fovea

@@ -1,8 +1,0 @@
-#pragma once
-
-namespace fovea {
-
-/// Version of the library and program, "MAJOR.MINOR.PATCH".
-const char* version();
-
-}  // namespace fovea
