@@ -21,14 +21,15 @@
 namespace fovea::app {
 namespace {
 
-constexpr const char* kFormats = "ply, pcd, las, 3dtiles, mesh, glb, frames or kitti-poses";
+constexpr const char* kFormats =
+    "ply, pcd, las, 3dtiles, mesh, glb, tum, csv, geojson, frames or kitti-poses";
 
 /// The format asked for, or else the one of the output's ending; CLI::ValidationError without
 /// either.
 std::string format_of(const ExportArguments& arguments) {
   if (!arguments.format.empty()) return arguments.format;
   const std::string ending = std::filesystem::path(arguments.output).extension().string();
-  for (const char* format : {"ply", "pcd", "las", "glb"}) {
+  for (const char* format : {"ply", "pcd", "las", "glb", "tum", "csv", "geojson"}) {
     if (ending == std::string(".") + format) return format;
   }
   throw CLI::ValidationError("--format",
@@ -75,7 +76,9 @@ CommandFiles files_of(const ExportArguments& arguments, const std::string& forma
   const std::map<std::string, ContentKind> kinds{
       {"ply", ContentKind::kPly},           {"pcd", ContentKind::kPcd},
       {"las", ContentKind::kLas},           {"glb", ContentKind::kGlb},
-      {"frames", ContentKind::kFrameTable}, {"kitti-poses", ContentKind::kPoses}};
+      {"frames", ContentKind::kFrameTable}, {"kitti-poses", ContentKind::kPoses},
+      {"csv", ContentKind::kFrameTable},    {"tum", ContentKind::kTrajectory},
+      {"geojson", ContentKind::kGeoJson}};
   if (const auto kind = kinds.find(format); kind != kinds.end()) {
     files.outputs = {{arguments.output, kind->second, arguments.force}};
   } else {
@@ -115,12 +118,14 @@ void add_export_command(CLI::App& app, Session& session) {
                    "File to write, or folder of 3dtiles and mesh and of all formats of a city")
       ->required();
   command
-      ->add_option("--format", arguments->format,
-                   "ply, pcd, las or 3dtiles (points; the last a folder), mesh (triangles as "
-                   "3dtiles, a folder), glb (triangles, a file), frames (CSV: stamps, poses "
-                   "and gains), or kitti-poses (T_local_lidar a line); default: by OUT's ending")
-      ->check(
-          CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "frames", "kitti-poses"}));
+      ->add_option(
+          "--format", arguments->format,
+          "ply, pcd, las or 3dtiles (points; the last a folder), mesh (triangles as "
+          "3dtiles, a folder), glb (triangles, a file), tum, csv or geojson (where the LiDAR was), "
+          "frames (CSV: stamps, poses and gains), or kitti-poses (T_local_lidar a line); "
+          "default: by OUT's ending")
+      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "tum", "csv", "geojson",
+                             "frames", "kitti-poses"}));
   command
       ->add_option("--crs", arguments->crs,
                    "Coordinates: local (the map's), utm (the origin's zone on WGS 84, ellipsoidal "

@@ -7,9 +7,8 @@
 #include "app/map_arguments.h"
 #include "app/print.h"
 #include "app/viewer_page.h"
-#include "fovea/exporting/frame_table.h"
+#include "fovea/exporting/frame_formats.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
-#include "fovea/exporting/pose_writer.h"
 #include "fovea/exporting/tileset/tileset_writer.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/point_files/las_writer.h"
@@ -71,15 +70,8 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
 
 void write(const MapReader& map, ExportArguments& arguments, const std::string& format,
            Warnings& warnings) {
-  if (format == "frames") {
-    map.check();  // frames need no tile
-    write_frame_table(map.frames(), arguments.output, arguments.force);
-    return;
-  }
-  if (format == "kitti-poses") {
-    map.check();
-    write_kitti_poses(map.frames(), arguments.output, arguments.force);
-    return;
+  if (is_frame_format(format)) {
+    return write_frame_format(map, format, arguments.output, arguments.force);
   }
   if (map.size() > 0 && map.colored_size() == 0 && !arguments.points.include_uncolored) {
     arguments.points.include_uncolored = true;

@@ -12,11 +12,12 @@
 namespace fovea {
 
 struct ExportOptions {
-  /// "ply", "pcd", "las", "3dtiles" (a folder), "mesh" (a folder), "glb", "frames" (CSV) or
-  /// "kitti-poses"; empty: by the ending of the output.
-  std::string format;
-  std::string crs;                 ///< "local", "utm" or "ecef"; empty: local
-  std::string where;               ///< "views >= 2 and range < 10"; empty: all points
+  /// "ply", "pcd", "las", "3dtiles" (a folder), "mesh" (a folder), "glb", or, of the
+  /// frames, "tum", "csv", "geojson", "frames" (CSV with gains) or "kitti-poses"; empty: by the
+  /// ending of the output.
+  std::string format = {};
+  std::string crs = {};            ///< "local", "utm" or "ecef"; empty: local
+  std::string where = {};          ///< "views >= 2 and range < 10"; empty: all points
   std::string exposure = "auto";   ///< "auto", "map", "frame:N" or stops above that of the map
   bool include_uncolored = false;  ///< also points that no camera saw, in gray
   bool double_positions = false;   ///< PLY and PCD

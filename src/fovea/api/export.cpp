@@ -8,10 +8,9 @@
 
 #include "fovea/drive/command_files.h"
 #include "fovea/errors.h"
-#include "fovea/exporting/frame_table.h"
+#include "fovea/exporting/frame_formats.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
-#include "fovea/exporting/pose_writer.h"
 #include "fovea/exporting/tileset/tileset_writer.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/point_files/las_writer.h"
@@ -22,16 +21,18 @@
 namespace fovea {
 namespace {
 
-constexpr std::array<std::string_view, 8> kFormats = {"ply",  "pcd", "las",    "3dtiles",
-                                                      "mesh", "glb", "frames", "kitti-poses"};
+constexpr std::array<std::string_view, 6> kPointFormats = {"ply",     "pcd",  "las",
+                                                           "3dtiles", "mesh", "glb"};
 
 std::string format_of(const std::filesystem::path& output, const ExportOptions& options) {
   std::string format = options.format;
   if (format.empty() && output.has_extension()) format = output.extension().string().substr(1);
-  if (std::find(kFormats.begin(), kFormats.end(), format) != kFormats.end()) return format;
+  const bool has_points =
+      std::find(kPointFormats.begin(), kPointFormats.end(), format) != kPointFormats.end();
+  if (has_points || is_frame_format(format)) return format;
   throw ConfigError(fmt::format("there is no export format '{}'", format), output.string(),
-                    "give ExportOptions::format: ply, pcd, las, 3dtiles, mesh, glb, frames or "
-                    "kitti-poses");
+                    "give ExportOptions::format: ply, pcd, las, 3dtiles, mesh, glb, tum, csv, "
+                    "geojson, frames or kitti-poses");
 }
 
 PointChoice point_choice(const MapReader& map, const ExportOptions& options) {
@@ -99,12 +100,8 @@ ExportedMap export_map(const std::filesystem::path& map, const std::filesystem::
                        const ExportOptions& options) {
   const std::string format = format_of(output, options);
   const MapReader reader(map);
-  if (format != "frames" && format != "kitti-poses") {
-    return write_points(reader, output, format, options);
-  }
-  reader.check();  // frames need no tile
-  const auto write_frames = format == "frames" ? write_frame_table : write_kitti_poses;
-  write_frames(reader.frames(), output, options.force);
+  if (!is_frame_format(format)) return write_points(reader, output, format, options);
+  write_frame_format(reader, format, output, options.force);
   return {};
 }
 

@@ -46,14 +46,14 @@ bool is_number(const std::string& word) {
   }
 }
 
-/// Whether the first line has 12 numbers; "nan" is one.
-bool is_pose_file(std::string_view text) {
+/// How many numbers the first line has; "nan" is one. 0 if it has anything else.
+int numbers_of_first_line(std::string_view text) {
   std::istringstream line{std::string(text.substr(0, text.find('\n')))};
   int numbers = 0;
   for (std::string word; line >> word; ++numbers) {
-    if (!is_number(word)) return false;
+    if (!is_number(word)) return 0;
   }
-  return numbers == 12;
+  return numbers;
 }
 
 /// Kind of a text that begins with '{', by its first key.
@@ -66,6 +66,9 @@ ContentKind kind_of_json_object(std::string_view text) {
   if (key == "fovea_poses") return ContentKind::kCityPoses;
   if (key == "fovea_catalog") return ContentKind::kCatalog;
   if (key == "fovea_city") return ContentKind::kCityManifest;
+  if (key == "type" && body.find("\"FeatureCollection\"") != std::string_view::npos) {
+    return ContentKind::kGeoJson;
+  }
   constexpr std::array kReportKeys{"map",   "protocol", "localize",
                                    "fovea", "warnings", "calibration"};
   const bool is_report =
@@ -108,7 +111,9 @@ ContentKind content_kind_of(const std::filesystem::path& file) {
   if (text.starts_with("frame,time_ns,")) return ContentKind::kPoseTable;
   if (text.starts_with("index,time_ns,")) return ContentKind::kFrameTable;
   if (text.starts_with("# Results\n\n    fovea reproduce")) return ContentKind::kMarkdown;
-  return is_pose_file(text) ? ContentKind::kPoses : ContentKind::kOther;
+  const int numbers = numbers_of_first_line(text);
+  if (numbers == 12) return ContentKind::kPoses;
+  return numbers == 8 ? ContentKind::kTrajectory : ContentKind::kOther;
 }
 
 const char* describe(ContentKind kind) {
@@ -141,6 +146,10 @@ const char* describe(ContentKind kind) {
       return "a PNG image";
     case ContentKind::kPoses:
       return "a pose file";
+    case ContentKind::kTrajectory:
+      return "a trajectory";
+    case ContentKind::kGeoJson:
+      return "a GeoJSON file";
     case ContentKind::kPoseTable:
       return "a table of poses";
     case ContentKind::kFrameTable:

@@ -20,8 +20,10 @@ enum class ContentKind {
   kGlb,
   kPng,
   kPoses,       ///< 12 numbers a line
+  kTrajectory,  ///< 8 numbers a line: TUM
+  kGeoJson,
   kPoseTable,   ///< CSV of `localize`
-  kFrameTable,  ///< CSV of `export --format frames`
+  kFrameTable,  ///< CSV of `export --format frames` and `--format csv`
   kMarkdown,    ///< of `reproduce`
   kSqlite,      ///< a database that is no map
   kJson,        ///< no report of Fovea

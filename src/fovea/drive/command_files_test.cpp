@@ -68,6 +68,8 @@ TEST_F(CommandFilesTest, ContentTellsTheKindOfAFile) {
       {"1 2 3 4 5 6 7 8 9 10 11 12 13\n", ContentKind::kOther},
       {"frame,time_ns,state\n", ContentKind::kPoseTable},
       {"index,time_ns,status\n", ContentKind::kFrameTable},
+      {"1.5 1 2 3 0 0 0 1\n", ContentKind::kTrajectory},
+      {"{\"type\":\"FeatureCollection\",\"features\":[]}", ContentKind::kGeoJson},
       {"time_ns,x\n", ContentKind::kOther},
       {"P0: 1 0 0 0 0 1 0 0 0 0 1 0\n", ContentKind::kOther},
   };
