@@ -45,6 +45,7 @@ RecordedCamera recorded_camera(const DriveCamera& camera) {
 
 std::vector<RecordedCamera> recorded_cameras(const std::vector<DriveCamera>& cameras) {
   std::vector<RecordedCamera> recorded;
+  recorded.reserve(cameras.size());
   for (const DriveCamera& camera : cameras) recorded.push_back(recorded_camera(camera));
   return recorded;
 }

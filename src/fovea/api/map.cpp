@@ -60,7 +60,7 @@ struct Map::Content {
 Map::Map(const std::filesystem::path& file) {
   MapReader reader(file);
   const ColorDisplay display = color_display({}, reader.frames());
-  content_.reset(new Content{std::move(reader), display});
+  content_ = std::make_unique<Content>(std::move(reader), display);
 }
 Map::~Map() = default;
 Map::Map(Map&&) noexcept = default;

@@ -1,5 +1,7 @@
 #include "fovea/pipeline/map_drive.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -16,7 +18,8 @@ namespace fovea {
 
 MapSettings map_settings_of(const MapperSettings& settings) {
   MapSettings result = load_preset(settings.preset);
-  for (const auto& [key, value] : settings.values) apply_setting(key + "=" + value, result);
+  for (const auto& [key, value] : settings.values)
+    apply_setting(fmt::format("{}={}", key, value), result);
   return result;
 }
 
