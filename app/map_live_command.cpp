@@ -19,6 +19,7 @@
 #include "fovea/pipeline/live_state.h"
 #include "fovea/pipeline/map_live.h"
 #include "fovea/pipeline/summary_json.h"
+#include "fovea/pipeline/tracking_state.h"
 
 namespace fovea::app {
 namespace {
@@ -43,12 +44,6 @@ LiveTopicsOptions options_of(const MapArguments& arguments, const LiveArguments&
   options.topics.allow_dropped = arguments.allow_dropped;
   if (arguments.resume) continue_map(arguments.output, options.live);
   return options;
-}
-
-/// "tracked", "lost" or "restarted".
-const char* state_of(const TrackingStats& tracking) {
-  if (tracking.is_lost) return "lost";
-  return tracking.has_restarted || tracking.is_pose_unknown ? "restarted" : "tracked";
 }
 
 class RobotMap {

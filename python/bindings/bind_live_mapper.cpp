@@ -9,6 +9,7 @@
 #include "fovea/core/read_file.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/errors.h"
+#include "fovea/live.h"
 #include "fovea/pipeline/live_state.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/json_object.h"

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "fovea/api/live_pose.h"
 #include "fovea/core/parallel.h"
 #include "fovea/pipeline/map_live.h"
 #include "fovea/pipeline/summary_json.h"
@@ -31,11 +32,6 @@ std::vector<std::weak_ptr<LiveRun>>& all_runs() {
 std::vector<std::shared_ptr<LiveRun>>& dropped_runs() {
   static std::vector<std::shared_ptr<LiveRun>> runs;
   return runs;
-}
-
-const char* state_of(const TrackingStats& tracking) {
-  if (tracking.is_lost) return "lost";
-  return tracking.has_restarted || tracking.is_pose_unknown ? "restarted" : "tracked";
 }
 
 /// A note may quote a name in any encoding.
@@ -157,15 +153,12 @@ void LiveRun::map() {
 }
 
 void LiveRun::report_pose(const FrameResult& frame) {
-  LivePose pose{frame.index, frame.stamp.value_or(0), state_of(frame.tracking),
-                frame.poses.T_local_lidar, std::nullopt};
-  if (frame.tracking.registration) pose.covariance = frame.tracking.registration->covariance;
   const py::gil_scoped_acquire running;
   const py::object on_pose = on_pose_;  // which the garbage collector may clear
   if (raised_ || !on_pose || on_pose.is_none()) return;
   run_in_on_pose = this;
   try {
-    on_pose(std::move(pose));
+    on_pose(live_pose(frame));
   } catch (py::error_already_set& exception) {
     raised_ = exception.value();
     if (exception.trace()) PyException_SetTraceback(raised_.ptr(), exception.trace().ptr());

@@ -20,15 +20,6 @@
 
 namespace fovea::python {
 
-/// A frame when it has its pose, before it is in the map.
-struct LivePose {
-  int index = 0;
-  TimeNs stamp = 0;
-  std::string state;  ///< "tracked", "lost" or "restarted"
-  RigidMotion T_local_lidar = RigidMotion::Identity();
-  std::optional<Eigen::Matrix<double, 6, 6>> covariance;  ///< RegistrationStats::covariance
-};
-
 struct LiveRunOptions {
   std::string drive_toml;
   LiveOptions source;

@@ -1,4 +1,4 @@
-// What stands behind the public drives. Private to api/.
+// The contents of the public drives. Private to api/.
 #pragma once
 
 #include <memory>

@@ -4,6 +4,7 @@
 #include "fovea/api/drive_content.h"
 #include "fovea/api/map_settings_of.h"
 #include "fovea/api/mapped_frame.h"
+#include "fovea/map/points_in_local.h"
 #include "fovea/mapper.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/initial_motion.h"
@@ -49,11 +50,7 @@ PointCloud FrameMapper::points() const {
   PointCloud points_local;
   for (const Submap& submap : content_->map().submaps()) {
     for (const auto& [key, tile] : submap.tiles) {
-      PointCloud points = tile.points->cloud();
-      for (Eigen::Vector3f& p : points.position) {
-        p = (submap.T_local_submap * (points.origin + p.cast<double>())).cast<float>();
-      }
-      points.origin.setZero();
+      const PointCloud points = points_in_local(tile.points->cloud(), submap.T_local_submap);
       if (!points.empty()) points_local.append(points);
     }
   }

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "fovea/api/live_pose.h"
 #include "fovea/api/map_settings_of.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
@@ -28,18 +29,6 @@ LiveOptions source_options(const std::filesystem::path& output, const LiveMapper
   source.record = options.record;
   if (options.resume) continue_map(output, source);
   return source;
-}
-
-const char* state_of(const TrackingStats& tracking) {
-  if (tracking.is_lost) return "lost";
-  return tracking.has_restarted || tracking.is_pose_unknown ? "restarted" : "tracked";
-}
-
-LivePose live_pose(const FrameResult& frame) {
-  LivePose pose{frame.index, frame.stamp.value_or(0), state_of(frame.tracking),
-                frame.poses.T_local_lidar, std::nullopt};
-  if (frame.tracking.registration) pose.covariance = frame.tracking.registration->covariance;
-  return pose;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "fovea/map/color_display.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/map_store.h"
+#include "fovea/map/points_in_local.h"
 
 namespace fovea {
 namespace {
@@ -23,20 +24,16 @@ bool is_near(const PointQuery::Box& box, const Eigen::Vector3d& center_local, do
 /// The points of a tile that pass, in the frame `local`.
 PointCloud passing_points(const PointCloud& tile, const RigidMotion& T_local_submap,
                           const PointQuery& query, const PointFilter& filter) {
-  std::vector<std::uint32_t> passing;
-  std::vector<Eigen::Vector3f> position_local;
-  for (std::size_t i = 0; i < tile.size(); ++i) {
+  const auto is_inside = [&](const PointQuery::Box& box, std::size_t i) {
     const Eigen::Vector3d p = T_local_submap * (tile.origin + tile.position[i].cast<double>());
-    const bool is_inside = !query.box || ((p.array() >= query.box->low.array()).all() &&
-                                          (p.array() <= query.box->high.array()).all());
-    if (!is_inside || !(filter.empty() || filter.matches(tile, i))) continue;
-    passing.push_back(static_cast<std::uint32_t>(i));
-    position_local.push_back(p.cast<float>());
+    return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
+  };
+  std::vector<std::uint32_t> passing;
+  for (std::size_t i = 0; i < tile.size(); ++i) {
+    if (query.box && !is_inside(*query.box, i)) continue;
+    if (filter.matches(tile, i)) passing.push_back(static_cast<std::uint32_t>(i));
   }
-  PointCloud points_local = tile.select(passing);
-  points_local.origin.setZero();
-  points_local.position = std::move(position_local);
-  return points_local;
+  return points_in_local(tile.select(passing), T_local_submap);
 }
 
 void check(const PointQuery& query) {

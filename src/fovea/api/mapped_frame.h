@@ -6,7 +6,7 @@
 
 namespace fovea {
 
-/// What the public API tells of a frame.
+/// A frame of a map for the public API.
 MappedFrame mapped_frame(const FrameRecord& record);
 
 }  // namespace fovea

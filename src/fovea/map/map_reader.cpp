@@ -8,6 +8,7 @@
 #include "fovea/map/map_file.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/numbered_records.h"
+#include "fovea/map/points_in_local.h"
 #include "fovea/map/record_rows.h"
 #include "fovea/map/submap_rows.h"
 
@@ -260,12 +261,7 @@ PointCloud MapReader::all_points_local(const PointFilter& where) const {
     const bool joins = points_local.empty() || tile.empty() ||
                        points_local.intensity.empty() == tile.intensity.empty();
     if (!joins) fail_at({submap, key}, "only some tiles have intensities", file_->where());
-    PointCloud tile_local = passing(tile, where);
-    tile_local.origin.setZero();
-    for (Eigen::Vector3f& p : tile_local.position) {
-      p = (T_local_submap[submap] * (tile.origin + p.cast<double>())).cast<float>();
-    }
-    points_local.append(tile_local);
+    points_local.append(points_in_local(passing(tile, where), T_local_submap[submap]));
   });
   return points_local;
 }

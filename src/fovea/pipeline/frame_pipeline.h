@@ -48,8 +48,6 @@ class FramePipeline {
   /// The next frame, in order; nothing at the end. Throws errors of reading and tracking in the
   /// order of the frames.
   std::optional<TrackedFrame> next();
-  /// Whether the next frame is tracked already. Never without threads.
-  bool has_next() const { return !tracked_.empty(); }
 
  private:
   std::jthread start_reader();
