@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "fovea/simulation/simulate.h"
+#include "tests/half_size_street.h"
 #include "tests/kitti_sample.h"
 #include "tests/program.h"
 
@@ -29,17 +30,7 @@ class CalibrationCheck : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     scratch_ = new TemporaryFolder;
-    SimulationOptions options = simulation_options(Scene::kStreet, "default");
-    options.seed = 5;
-    options.frames = 16;
-    options.format = DriveFormat::kGeneric;
-    options.camera.cameras = {kitti_camera(2)};
-    options.camera.width = 620;
-    options.camera.height = 188;
-    options.camera.focal = 360;
-    options.camera.cx = 304.5;
-    options.camera.cy = 86.2;
-    simulate(options, *scratch_ / "street");
+    simulate(half_size_street(16), *scratch_ / "street");
   }
   static void TearDownTestSuite() { delete scratch_; }
 

@@ -16,6 +16,7 @@
 #include "fovea/pipeline/live_clocks.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/simulation/simulate.h"
+#include "tests/half_size_street.h"
 #include "tests/temporary_folder.h"
 
 namespace fovea::camera_clock_test {
@@ -32,16 +33,7 @@ constexpr double kDrift = 0.005 / 60;                            // s per s
 
 /// A street. All images are later than their stamps say.
 std::unique_ptr<FrameSource> simulate_street(const std::filesystem::path& folder, double late) {
-  SimulationOptions options = simulation_options(Scene::kStreet, "default");
-  options.seed = 5;
-  options.frames = kUsed;
-  options.format = DriveFormat::kGeneric;
-  options.camera.cameras = {kitti_camera(2)};
-  options.camera.width = 620;
-  options.camera.height = 188;
-  options.camera.focal = 360;
-  options.camera.cx = 304.5;
-  options.camera.cy = 86.2;
+  SimulationOptions options = half_size_street(kUsed);
   options.camera.trigger_delay = late;
   DriveOptions without_imu;
   without_imu.use_imu = false;

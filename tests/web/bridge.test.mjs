@@ -1,14 +1,12 @@
 // `fovea convert ws://...`: the topics of a running robot, as a Foxglove bridge sends them, give the drive that they are.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { once } from 'node:events';
 import { existsSync, mkdirSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 
 import { record } from './bags.mjs';
 import { BridgeServer } from './bridge_server.mjs';
 import { ConvertDrives } from './convert_drives.mjs';
-import { programNamedBy } from './test_map.mjs';
+import { startProgram } from './program.mjs';
 
 const limit = { timeout: 120_000 };  // a client that does not come would be waited for
 
@@ -25,16 +23,7 @@ after(() => drives.remove());
 /// `fovea convert URL -o NAME/drive`, as the process, a promise of {status, out, err} and a wait for words on stderr.
 function convert(url, name, ...options) {
   mkdirSync(drives.path(name), { recursive: true });
-  const child = spawn(programNamedBy('FOVEA_PROGRAM'),
-    ['convert', url, ...(name ? ['-o', drives.path(name, 'drive')] : []), ...options]);
-  const said = { out: '', err: '' };
-  child.stdout.on('data', (bytes) => { said.out += bytes; });
-  child.stderr.on('data', (bytes) => { said.err += bytes; });
-  const ended = once(child, 'close').then(([status]) => ({ status, ...said }));
-  const saying = async (pattern) => {
-    while (!pattern.test(said.err)) await once(child.stderr, 'data');
-  };
-  return { child, ended, saying };
+  return startProgram(['convert', url, ...(name ? ['-o', drives.path(name, 'drive')] : []), ...options]);
 }
 
 async function bridge(t, messages, options) {

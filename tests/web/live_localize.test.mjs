@@ -1,13 +1,13 @@
 // `fovea localize ws://...`: a running robot in the map of an earlier drive.
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
-import { once } from 'node:events';
+import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 
 import { record } from './bags.mjs';
 import { BridgeServer } from './bridge_server.mjs';
 import { ConvertDrives } from './convert_drives.mjs';
+import { startProgram } from './program.mjs';
 import { programNamedBy } from './test_map.mjs';
 
 const limit = { timeout: 60_000 };  // a client that does not come would be waited for
@@ -40,11 +40,7 @@ after(() => drives.remove());
 
 /// `fovea localize URL`, as the process and a promise of {status, out, err}.
 function localize(url, output, ...options) {
-  const child = spawn(program, ['localize', url, map, '-o', drives.path(output), '--every-frame', ...options]);
-  const said = { out: '', err: '' };
-  child.stdout.on('data', (bytes) => { said.out += bytes; });
-  child.stderr.on('data', (bytes) => { said.err += bytes; });
-  return { child, ended: once(child, 'close').then(([status]) => ({ status, ...said })) };
+  return startProgram(['localize', url, map, '-o', drives.path(output), '--every-frame', ...options]);
 }
 
 async function bridge(t, played = messages, options = {}) {

@@ -1,8 +1,7 @@
 // `fovea map ws://...`: the map of a running robot is the map of its recording.
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
+import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { once } from 'node:events';
 import { existsSync, mkdirSync, readFileSync, renameSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 
@@ -10,6 +9,7 @@ import { record } from './bags.mjs';
 import { BridgeServer } from './bridge_server.mjs';
 import { launchBrowser, MapPage } from './browser.mjs';
 import { ConvertDrives } from './convert_drives.mjs';
+import { startProgram } from './program.mjs';
 import { programNamedBy } from './test_map.mjs';
 
 const limit = { timeout: 240_000 };  // a client that does not come would be waited for
@@ -48,17 +48,8 @@ function mapDrive(name, ...options) {
 /// `fovea map URL`, as the process, a promise of {status, out, err} and a wait for words that it prints.
 function mapOf(url, name, ...options) {
   mkdirSync(drives.path(name), { recursive: true });
-  const child = spawn(program, ['map', url, '-o', drives.path(name, 'map.fovea'), '--cameras', '0', '--max-wait', '60',
+  return startProgram(['map', url, '-o', drives.path(name, 'map.fovea'), '--cameras', '0', '--max-wait', '60',
     '--report', drives.path(name, 'report.json'), ...options]);
-  const said = { out: '', err: '' };
-  child.stdout.on('data', (bytes) => { said.out += bytes; });
-  child.stderr.on('data', (bytes) => { said.err += bytes; });
-  const ended = once(child, 'close').then(([status]) => ({ status, ...said }));
-  const saying = async (pattern, where = 'err') => {
-    while (!pattern.test(said[where])) await once(where === 'err' ? child.stderr : child.stdout, 'data');
-    return pattern.exec(said[where]);
-  };
-  return { child, ended, saying };
 }
 
 async function bridge(t, messages, options) {

@@ -73,10 +73,8 @@ class MapLiveLoop : public testing::Test {
     job.settings.mapper().surface.spacing = 0.2;
     job.texture_every_frame = true;
     job.resume = resume;
-    LiveOptions options;
+    LiveOptions options = test::patient_options();
     options.drive.use_images = false;
-    options.waits = true;
-    options.max_wait = options.longest_beginning = 60;  // nothing is late
     if (resume) continue_map(job.output, options);
     LiveSource source(lap_data(0, 1).write(folder_ / "sensors"), options);
     const std::jthread sensors([&] {

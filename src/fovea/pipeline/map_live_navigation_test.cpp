@@ -62,14 +62,6 @@ test::LiveData town_data(int begin, int end, int fix) {
   return data;
 }
 
-LiveOptions all_data() {
-  LiveOptions options;
-  options.first_scans = 10;
-  options.waits = true;
-  options.max_wait = options.longest_beginning = 60;  // nothing is late
-  return options;
-}
-
 }  // namespace
 
 class MapLiveNavigation : public testing::Test {
@@ -89,7 +81,7 @@ class MapLiveNavigation : public testing::Test {
     return map_live(source, job, {});
   }
   MapSummary resume(const test::LiveData& data) const {
-    LiveOptions options = all_data();
+    LiveOptions options = test::patient_options();
     continue_map(path_, options);
     return map(data, options, /*resume=*/true);
   }
@@ -115,7 +107,7 @@ class MapLiveNavigation : public testing::Test {
 };
 
 TEST_F(MapLiveNavigation, AFirstFixPlacesTheMap) {
-  EXPECT_EQ(map(town_data(0, kFrames, kBegin), all_data()).frames_mapped, kFrames);
+  EXPECT_EQ(map(town_data(0, kFrames, kBegin), test::patient_options()).frames_mapped, kFrames);
   expect_true_places(0.15);
   const MapReader reader(path_);
   for (const FrameRecord& frame : reader.frames()) {
@@ -132,7 +124,7 @@ TEST_F(MapLiveNavigation, LaterPosesPlaceTheMapInTheirWorld) {
     }
     return data;
   };
-  map(by_poses(0, 20), all_data());
+  map(by_poses(0, 20), test::patient_options());
   resume(by_poses(20, kFrames));
   const MapReader reader(path_);
   EXPECT_FALSE(map_origin(reader.meta()));
@@ -146,18 +138,18 @@ TEST_F(MapLiveNavigation, LaterPosesPlaceTheMapInTheirWorld) {
 }
 
 TEST_F(MapLiveNavigation, WithoutAFixTheMapHasNoPlace) {
-  map(town_data(0, 14, kFrames), all_data());
+  map(town_data(0, 14, kFrames), test::patient_options());
   EXPECT_FALSE(map_origin(MapReader(path_).meta()));
 }
 
 TEST_F(MapLiveNavigation, ALaterRunKeepsThePlace) {
-  map(town_data(0, 20, kBegin), all_data());
+  map(town_data(0, 20, kBegin), test::patient_options());
   resume(town_data(20, kFrames, kFrames));  // without a fix
   expect_true_places(0.15);
 }
 
 TEST_F(MapLiveNavigation, NavigationMayBeginWithALaterRun) {
-  map(town_data(0, kBegin, kFrames), all_data());
+  map(town_data(0, kBegin, kFrames), test::patient_options());
   resume(town_data(kBegin, kFrames, kBegin));
   expect_true_places(0.15);
 }

@@ -49,13 +49,6 @@ test::LiveData town_data(int begin, int end) {
   return data;
 }
 
-LiveOptions all_data() {
-  LiveOptions options;
-  options.waits = true;
-  options.max_wait = options.longest_beginning = 60;  // nothing is late
-  return options;
-}
-
 }  // namespace
 
 class MapLive : public testing::Test {
@@ -128,7 +121,7 @@ TEST_F(MapLive, TheMapIsThatOfTheDrive) {
   const test::LiveData data = town_data(0, kFrames);
   data.write(folder_ / "drive");
   const MapSummary of_file = map_drive(*open_drive(folder_ / "drive", {}), job("file.fovea"), {});
-  const MapSummary of_live = map(data, job("live.fovea"), all_data());
+  const MapSummary of_live = map(data, job("live.fovea"), test::patient_options());
   EXPECT_EQ(of_live.frames_mapped, kFrames);
   EXPECT_EQ(of_live.textures_skipped, 0);
   EXPECT_TRUE(is_complete(MapReader(folder_ / "live.fovea").meta()));
@@ -154,17 +147,17 @@ TEST_F(MapLive, TheMapIsThatOfTheDrive) {
 
 TEST_F(MapLive, ALaterRunContinuesTheMap) {
   constexpr int kBefore = 14;
-  map(town_data(0, kBefore), job("map.fovea"), all_data());
+  map(town_data(0, kBefore), job("map.fovea"), test::patient_options());
   MapJob further = job("map.fovea");
   further.resume = true;
-  LiveOptions options = all_data();
+  LiveOptions options = test::patient_options();
   continue_map(further.output, options);
   EXPECT_EQ(options.first_frame, kBefore);
   const MapSummary summary = map(town_data(kBefore, kFrames), further, options);
   EXPECT_EQ(summary.frames_mapped, kFrames);
   EXPECT_EQ(summary.frames_new, std::size_t(kFrames - kBefore));
 
-  map(town_data(0, kFrames), job("whole.fovea"), all_data());
+  map(town_data(0, kFrames), job("whole.fovea"), test::patient_options());
   const MapReader resumed(further.output), whole(folder_ / "whole.fovea");
   const DriveRecord drive = resumed.drives().front(), same = whole.drives().front();
   EXPECT_EQ(drive.first_frame, 0);
@@ -189,8 +182,8 @@ TEST_F(MapLive, AMapOfFilesIsNotContinuedLive) {
 }
 
 TEST_F(MapLive, OtherSettingsDoNotContinueAMap) {
-  map(town_data(0, 12), job("map.fovea"), all_data());
-  LiveOptions options = all_data();
+  map(town_data(0, 12), job("map.fovea"), test::patient_options());
+  LiveOptions options = test::patient_options();
   continue_map(folder_ / "map.fovea", options);
   MapJob further = job("map.fovea");
   further.resume = true;
@@ -199,18 +192,18 @@ TEST_F(MapLive, OtherSettingsDoNotContinueAMap) {
 }
 
 TEST_F(MapLive, AClockBehindTheMapDoesNotContinueIt) {
-  map(town_data(4, 14), job("map.fovea"), all_data());
+  map(town_data(4, 14), job("map.fovea"), test::patient_options());
   const std::string before = MapReader(folder_ / "map.fovea").digest();
   MapJob further = job("map.fovea");
   further.resume = true;
-  LiveOptions options = all_data();
+  LiveOptions options = test::patient_options();
   continue_map(further.output, options);
   EXPECT_THROW(map(town_data(0, 12), further, options), InputError);
   EXPECT_EQ(MapReader(further.output).digest(), before);
 }
 
 TEST_F(MapLive, ADamagedStateIsAnError) {
-  map(town_data(0, 12), job("map.fovea"), all_data());
+  map(town_data(0, 12), job("map.fovea"), test::patient_options());
   const CheckpointRecord whole = MapReader(folder_ / "map.fovea").checkpoint(kLiveState).value();
   LiveState state;
   state.image_delays[2] = std::numeric_limits<double>::quiet_NaN();
@@ -236,8 +229,8 @@ TEST_F(MapLive, ADamagedStateIsAnError) {
 }
 
 TEST_F(MapLive, OtherSensorsDoNotContinueAMap) {
-  map(town_data(0, 12), job("map.fovea"), all_data());
-  LiveOptions options = all_data();
+  map(town_data(0, 12), job("map.fovea"), test::patient_options());
+  LiveOptions options = test::patient_options();
   continue_map(folder_ / "map.fovea", options);
   MapJob further = job("map.fovea");
   further.resume = true;
@@ -249,14 +242,14 @@ TEST_F(MapLive, EachFrameIsTrackedBeforeItIsMapped) {
   MapJob job = this->job("map.fovea");
   std::vector<int> tracked;
   job.on_tracked = [&](const FrameResult& frame) { tracked.push_back(frame.index); };
-  map(town_data(0, 12), job, all_data());
+  map(town_data(0, 12), job, test::patient_options());
   std::vector<int> all(12);
   std::iota(all.begin(), all.end(), 0);
   EXPECT_EQ(tracked, all);
 }
 
 TEST_F(MapLive, FramesAddNothingWhileTheMapIsBehind) {
-  LiveOptions options = all_data();
+  LiveOptions options = test::patient_options();
   options.max_scans = 2;
   const int ahead = 4 + 2;  // scans that are read or tracked, and those of the queue
   std::atomic<int> sent = 0;
@@ -271,7 +264,7 @@ TEST_F(MapLive, FramesAddNothingWhileTheMapIsBehind) {
 }
 
 TEST_F(MapLive, EachFrameAddsToAMapThatKeepsUp) {
-  const LiveOptions options = all_data();
+  const LiveOptions options = test::patient_options();
   const int first = int(options.first_scans);
   std::atomic<int> done = 0;
   const auto wait_for_map = [&](int scan) {
@@ -283,7 +276,7 @@ TEST_F(MapLive, EachFrameAddsToAMapThatKeepsUp) {
 }
 
 TEST_F(MapLive, WithoutAScanThereIsNoMap) {
-  EXPECT_THROW(map({}, job("map.fovea"), all_data()), InputError);
+  EXPECT_THROW(map({}, job("map.fovea"), test::patient_options()), InputError);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "map.fovea"));
 }
 
@@ -291,7 +284,7 @@ TEST_F(MapLive, AStopEndsTheRunWithACompleteMap) {
   std::stop_source stop;
   MapJob job = this->job("map.fovea");
   job.stop = stop.get_token();
-  LiveSource source(drive_toml(), all_data());
+  LiveSource source(drive_toml(), test::patient_options());
   const std::jthread sensors([&] {
     for (const auto& [stamp, call] : town_data(0, kFrames).calls()) call(source);
     source.close();

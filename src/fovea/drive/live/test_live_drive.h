@@ -14,6 +14,14 @@
 
 namespace fovea::test {
 
+/// Of a source whose senders wait, and for which nothing is late.
+inline LiveOptions patient_options() {
+  LiveOptions options;
+  options.waits = true;
+  options.max_wait = options.longest_beginning = 60;
+  return options;
+}
+
 inline constexpr TimeNs kLiveStart = 1'700'000'000'000'000'000, kLiveStep = kNsPerSecond / 10;
 inline constexpr int kLiveWidth = 64, kLiveHeight = 40;
 

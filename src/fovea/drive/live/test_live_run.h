@@ -20,7 +20,6 @@ struct PlayedDrive {
 inline LiveOptions all_data() {
   LiveOptions options;
   options.drive.cameras = {3, 0};
-  options.first_scans = 10;
   options.waits = true;
   // Nothing may wait that long.
   options.max_wait = 20;
