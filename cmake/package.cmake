@@ -1,0 +1,53 @@
+# The package of Debian 12: program, library, headers and Python module. scripts/build_packages.sh builds it.
+include(cmake/licenses.cmake)
+set(licenses ${PROJECT_BINARY_DIR}/THIRD_PARTY_LICENSES)
+fovea_write_licenses(${licenses})
+if(SKBUILD)  # the wheel
+  install(FILES ${licenses} DESTINATION ${SKBUILD_METADATA_DIR}/licenses COMPONENT wheel)
+  return()
+endif()
+
+set(debian ${PROJECT_BINARY_DIR}/debian)
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # or that of SOURCE_DATE_EPOCH
+foreach(name copyright changelog.Debian)
+  configure_file(cmake/debian/${name}.in ${debian}/${name} @ONLY)
+endforeach()
+configure_file(CHANGELOG.md ${debian}/changelog COPYONLY)
+find_program(FOVEA_GZIP gzip)
+if(FOVEA_GZIP)
+  execute_process(COMMAND ${FOVEA_GZIP} -9nf changelog changelog.Debian WORKING_DIRECTORY ${debian})
+  install(FILES ${debian}/changelog.gz ${debian}/changelog.Debian.gz TYPE DOC)
+endif()
+install(FILES ${debian}/copyright ${licenses} TYPE DOC)
+file(GLOB pages docs/*.md)
+install(FILES ${pages} README.md TYPE DOC)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.cpp)
+install(DIRECTORY python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/python FILES_MATCHING PATTERN *.py)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "Fovea maintainers <maintainers@fovea.example>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+                                                WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Drives with LiDAR and cameras into colored 3D point maps
+ Fovea turns LiDAR scans, camera images, GPS/INS and IMU into a dense map of the street.
+ The package contains the program, the C++ library with its headers, and the Python module.")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev")
+if(TARGET fovea_python)
+  math(EXPR next_python "${Python_VERSION_MINOR} + 1")
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), "
+         "python3 (<< ${Python_VERSION_MAJOR}.${next_python}), python3-numpy")
+endif()
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-distributed")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "chromium | firefox-esr | www-browser, g++, pkg-config")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+foreach(name triggers postinst prerm)
+  list(APPEND CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/${name})
+endforeach()
+include(CPack)

