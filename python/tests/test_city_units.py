@@ -9,7 +9,7 @@ import unittest
 from unittest import mock
 
 from fovea.city import lock, worker
-from fovea.city.arguments import parser, settings_of
+from fovea.city.arguments import find_program, parser, settings_of
 from fovea.city.drives import check_coordinates
 from fovea.city.folder import FOLDERS, CityFolder, write_json
 from fovea.city.jobs import Job
@@ -163,6 +163,25 @@ class OptionsTest(unittest.TestCase):
             arguments = parser().parse_args(["plan", "drive", "-o", "city", option, value])
             with self.assertRaisesRegex(ConfigError, option):
                 settings_of(arguments)
+
+
+class ProgramTest(FolderTestCase):
+    def test_the_program_of_pip_precedes_that_of_the_shell(self):
+        for name in ("pip", "shell"):
+            program = self.folder / name / "fovea"
+            program.parent.mkdir()
+            program.write_text("#!/bin/sh\n")
+            program.chmod(0o755)
+        environment = {"PATH": str(self.folder / "shell")}
+        with mock.patch.dict(os.environ, environment, clear=True), \
+                mock.patch("sysconfig.get_path", return_value=str(self.folder / "pip")):
+            self.assertEqual(find_program(), str(self.folder / "pip" / "fovea"))
+            (self.folder / "pip" / "fovea").unlink()
+            self.assertEqual(find_program(), str(self.folder / "shell" / "fovea"))
+            (self.folder / "shell" / "fovea").unlink()
+            self.assertRaises(ConfigError, find_program)
+            os.environ["FOVEA_PROGRAM"] = "/bin/true"
+            self.assertEqual(find_program(), "/bin/true")
 
 
 class CoordinatesTest(unittest.TestCase):

@@ -5,6 +5,7 @@ import argparse
 import math
 import os
 import shutil
+import sysconfig
 import tempfile
 
 from .jobs import EXPORT_FORMS
@@ -118,9 +119,13 @@ def run_options_of(arguments: argparse.Namespace) -> RunOptions:
 
 
 def find_program() -> str:
-    """The path of `fovea`: $FOVEA_PROGRAM, or that of the shell. ConfigError if there is none."""
+    """The path of `fovea`: $FOVEA_PROGRAM, or that of pip next to this Python, or that of the shell.
+
+    ConfigError if there is none.
+    """
     named = os.environ.get("FOVEA_PROGRAM")
-    found = shutil.which(named or "fovea")
+    installed_by_pip = None if named else shutil.which("fovea", path=sysconfig.get_path("scripts"))
+    found = installed_by_pip or shutil.which(named or "fovea")
     if found is None:
         raise config_error("the program fovea is missing", named or "PATH",
                            "build or install Fovea, or name the program in FOVEA_PROGRAM")
