@@ -3,6 +3,7 @@
 Poses are 4x4 matrices T_to_from, lengths metres, angles radians, times int nanoseconds;
 docs/python.md has examples.
 """
+from . import _processor  # first of all: the compiled module may not run here
 from ._fovea import (
     Camera,
     CameraModel,
