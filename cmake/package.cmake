@@ -33,16 +33,17 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Drives with LiDAR and cameras into colored 3D point maps
- Fovea turns LiDAR scans, camera images, GPS/INS and IMU into a dense map of the street.
- The package contains the program, the C++ library with its headers, and the Python module.")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Drives with LiDAR and cameras into colored 3D point maps")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Fovea turns LiDAR scans, camera images, GPS/INS and IMU into a dense map of the
+street. The package contains the program, the C++ library with its headers, and the Python module.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev")
 if(TARGET fovea_python)
-  math(EXPR next_python "${Python_VERSION_MINOR} + 1")
-  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), "
-         "python3 (<< ${Python_VERSION_MAJOR}.${next_python}), python3-numpy")
+  get_directory_property(minor DIRECTORY python DEFINITION Python_VERSION_MINOR)
+  math(EXPR next "${minor} + 1")
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-numpy")
 endif()
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-distributed")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "chromium | firefox-esr | www-browser, g++, pkg-config")

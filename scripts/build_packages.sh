@@ -5,21 +5,24 @@
 #   fovea-VERSION-cp311-*.whl    the wheel, for Python 3.11 and glibc 2.36 or later
 #   SHA256SUMS
 # The wheel needs PyPI. Without it, a notice says so, the other files are built, and the exit code is 0.
-# scripts/test_packages.sh installs and uses the packages.
+# FOVEA_PACKAGE_WORK is the folder of the build (default: /tmp/fovea_packages_UID). It is the same for all checkouts, so
+# that ccache finds earlier builds. scripts/test_packages.sh installs and uses the packages.
 set -euo pipefail
-[[ $# -eq 1 && $1 != -* ]] || { sed -n '2,8s/^# //p' "$0" && exit 2; }
+[[ $# -eq 1 && $1 != -* ]] || { sed -n '2,9s/^# //p' "$0" && exit 2; }
 mkdir -p "$1"
 out=$(cd "$1" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-version=$(sed -n 's/^project(fovea VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
-work=$PWD/build/packages
+version=$(sed -n 's/^project(fovea VERSION \([0-9.]*\).*/\1/p' <(git show HEAD:CMakeLists.txt))
+work=${FOVEA_PACKAGE_WORK:-/tmp/fovea_packages_$UID}
+mkdir -p "$work"
+exec 8>"$work/lock"
+flock 8 # one build at a time
 source=$work/fovea-$version
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH
 
 unpack_source() {
-  rm -rf "$work" "$out"/fovea[-_]*.{tar.gz,deb,whl} "$out/SHA256SUMS"
-  mkdir -p "$work"
+  rm -rf "$source" "$work/wheel" "$work/tools" "$out"/fovea[-_]*.{tar.gz,deb,whl} "$out/SHA256SUMS"
   git archive --format=tar --prefix="fovea-$version/" HEAD | gzip -9n >"$out/fovea-$version.tar.gz"
   tar -xzf "$out/fovea-$version.tar.gz" -C "$work"
   # The same packages of npm as here need no second download.
@@ -35,7 +38,7 @@ build_deb() {
     -DCMAKE_INSTALL_PREFIX=/usr -DFOVEA_PYTHON_SITE=lib/python3/dist-packages -DFOVEA_BUILD_TESTS=OFF \
     -DFOVEA_WARNINGS_AS_ERRORS=OFF >"$work/configure.log" || { cat "$work/configure.log" >&2 && return 1; }
   cmake --build "$source/build" --target fovea_app fovea_shared fovea_python
-  (umask 022 && cd "$source/build" && cpack -G DEB -B "$out" -D CPACK_CMAKE_GENERATOR= >"$work/cpack.log") ||
+  (umask 022 && cd "$source/build" && cpack -G DEB -B "$out" >"$work/cpack.log") ||
     { cat "$work/cpack.log" >&2 && return 1; }
   rm -rf "$out/_CPack_Packages"
 }
@@ -54,7 +57,7 @@ build_wheel() {
     -DPython_ROOT_DIR=/usr >/dev/null
   "$tools/pip" wheel "$source" --quiet --no-deps --disable-pip-version-check --wheel-dir "$work/wheel" \
     -Cbuild-dir="$source/build"
-  PATH=$tools:$PATH "$tools/auditwheel" repair --plat manylinux_2_36_x86_64 --wheel-dir "$out" \
+  PATH=$tools:$PATH "$tools/auditwheel" repair --only-plat --plat manylinux_2_36_x86_64 --wheel-dir "$out" \
     "$work"/wheel/fovea-*.whl >"$work/auditwheel.log" 2>&1 || { cat "$work/auditwheel.log" >&2 && return 1; }
 }
 
@@ -63,7 +66,7 @@ build_deb
 if install_wheel_tools; then
   build_wheel
 else
-  echo "build_packages: PyPI is unreachable: the wheel is left out (see build/packages/tools.log)" >&2
+  echo "build_packages: PyPI is unreachable: the wheel is left out (see $work/tools.log)" >&2
 fi
 (cd "$out" && sha256sum fovea[-_]* >SHA256SUMS)
 ls -l "$out"
