@@ -7,6 +7,7 @@
 #                                        the thread sanitizer (or one of them)
 #   ./test.sh --fuzz [SECONDS] [--no-install]
 #                                        the fuzzers of the readers (fuzz/), each for so long (600)
+#   ./test.sh --interop [--no-install]   our files against other programs, from PyPI (docs/interoperability.md)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -14,6 +15,7 @@ install_flag=
 sanitizers=()
 sanitize=false
 fuzz=false
+interop=false
 fuzz_seconds=600
 for argument in "$@"; do
   case $argument in
@@ -21,8 +23,9 @@ for argument in "$@"; do
     --sanitize) sanitize=true ;;
     address | thread) sanitizers+=("$argument") ;;
     --fuzz) fuzz=true ;;
+    --interop) interop=true ;;
     -h | --help)
-      sed -n '2,9s/^# //p' "$0"
+      sed -n '2,10s/^# //p' "$0"
       exit 0
       ;;
     *)
@@ -45,6 +48,17 @@ run_tests() { # FOLDER OF build/ [CTEST OPTION...]
 if $fuzz; then
   scripts/build.sh fuzz
   FOVEA_FUZZ_SECONDS=$fuzz_seconds run_tests asan -L '^fuzz$'
+  exit 0
+fi
+
+if $interop; then
+  folder=${FOVEA_INTEROP_FOLDER:-build/interop}
+  code=0
+  tests/interop/environment.sh "$folder" || code=$?
+  [[ $code -ne 77 ]] || exit 0 # skipped
+  [[ $code -eq 0 ]] || exit "$code"
+  scripts/build.sh release
+  tests/interop/run.sh "$folder" build/release
   exit 0
 fi
 

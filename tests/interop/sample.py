@@ -1,0 +1,82 @@
+"""A small simulated drive and its map, which all test modules share."""
+import atexit
+import functools
+import os
+import pathlib
+import subprocess
+import tempfile
+from typing import Any
+
+import fovea
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+PROGRAM = os.environ["FOVEA_PROGRAM"]
+FRAMES = 12
+SETTINGS = ("camera.numbers=[2]", "camera.width=480", "camera.height=160", "camera.focal=270",
+            "camera.cx=238.5", "camera.cy=72.25", "lidar.columns=900")
+MILLIMETER = 1e-3
+
+
+def share(folder: str) -> None:
+    """The modules that this process starts keep their sample in this folder."""
+    os.environ["FOVEA_INTEROP_SAMPLE"] = folder
+
+
+@functools.lru_cache(maxsize=None)
+def folder() -> pathlib.Path:
+    if "FOVEA_INTEROP_SAMPLE" in os.environ:
+        return pathlib.Path(os.environ["FOVEA_INTEROP_SAMPLE"])
+    made = tempfile.TemporaryDirectory(prefix="fovea_interop_")
+    atexit.register(made.cleanup)
+    return pathlib.Path(made.name)
+
+
+def run(*arguments: object) -> str:
+    """The output of the program; an error if it fails."""
+    return subprocess.run([PROGRAM, *map(str, arguments)], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+
+
+def drive() -> pathlib.Path:
+    """A folder with a drive.toml."""
+    path = folder() / "drive"
+    if not path.exists():
+        settings = [word for setting in SETTINGS for word in ("--set", setting)]
+        run("simulate", "-o", path, "--format", "generic", "--frames", FRAMES, "--seed", 3, "--quiet",
+            *settings)
+    return path
+
+
+def map_file() -> pathlib.Path:
+    path = folder() / "map.fovea"
+    if not path.exists():
+        run("map", drive(), "-o", path, "--set", "surface.spacing_m=0.05", "--quiet")
+    return path
+
+
+def export(name: str, *options: str) -> pathlib.Path:
+    """An export of the map, by default in the exposure of `fovea.Points`."""
+    path = folder() / name
+    run("export", map_file(), path, "--force", "--quiet", *options)
+    return path
+
+
+def positions(points: fovea.Points) -> npt.NDArray[np.float64]:
+    """N x 3, frame `local` (m)."""
+    return points.origin + points.position.astype(np.float64)
+
+
+def assert_same_points(ours: list[npt.NDArray[Any]], theirs: list[npt.NDArray[Any]],
+                       tolerance: float = MILLIMETER) -> None:
+    """The points are the same, in any order. Each list has positions and further columns.
+
+    A point with its further columns is one vector: a wrong column is as far away as a wrong position.
+    """
+    ours_joined, theirs_joined = (np.column_stack(columns).astype(np.float64) for columns in (ours, theirs))
+    assert ours_joined.shape == theirs_joined.shape, f"{ours_joined.shape} and {theirs_joined.shape}"
+    for here, there in ((ours_joined, theirs_joined), (theirs_joined, ours_joined)):
+        distances, _ = cKDTree(there).query(here, distance_upper_bound=2 * tolerance)
+        lonely = int(np.sum(~(distances <= tolerance)))
+        assert lonely == 0, f"{lonely} of {len(here)} points have no equal one"
