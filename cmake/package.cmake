@@ -34,8 +34,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Drives with LiDAR and cameras into colored 3D point maps")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Fovea turns LiDAR scans, camera images, GPS/INS and IMU into a dense map of the
-street. The package contains the program, the C++ library with its headers, and the Python module.")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Fovea turns LiDAR scans, camera images, GPS/INS and IMU into a dense
+map of the street. The package contains the program, the C++ library with
+its headers, and the Python module.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")

@@ -23,7 +23,7 @@ export SOURCE_DATE_EPOCH
 
 unpack_source() {
   rm -rf "$source" "$work/wheel" "$work/tools" "$out"/fovea[-_]*.{tar.gz,deb,whl} "$out/SHA256SUMS"
-  git archive --format=tar --prefix="fovea-$version/" HEAD | gzip -9n >"$out/fovea-$version.tar.gz"
+  git -c tar.umask=022 archive --format=tar --prefix="fovea-$version/" HEAD | gzip -9n >"$out/fovea-$version.tar.gz"
   tar -xzf "$out/fovea-$version.tar.gz" -C "$work"
   # The same packages of npm as here need no second download.
   if cmp -s viewer/package-lock.json viewer/node_modules/.installed-lock.json; then

@@ -27,8 +27,8 @@ make_base() {
   [[ ! -f $base ]] || return 0
   mkdir -p "$cache/archives"
   rm -rf "$cache/base"
-  debootstrap --variant=minbase --include=ca-certificates bookworm "$cache/base" "$(mirror)" >"$cache/debootstrap.log" 2>&1 ||
-    return 1
+  debootstrap --variant=minbase --include=ca-certificates bookworm "$cache/base" "$(mirror)" \
+    >"$cache/debootstrap.log" 2>&1 || return 1
   tar -C "$cache/base" --one-file-system -cf "$base.new" .
   mv "$base.new" "$base"
   rm -rf "$cache/base"
