@@ -56,7 +56,7 @@ build_wheel() {
   cmake -S "$source" -B "$source/build" -U 'Python*' -U '_Python*' -U 'pybind11*' -U FOVEA_PYTHON_SITE \
     -DPython_ROOT_DIR=/usr >/dev/null
   "$tools/pip" wheel "$source" --quiet --no-deps --disable-pip-version-check --wheel-dir "$work/wheel" \
-    -Cbuild-dir="$source/build"
+    --config-settings=build-dir="$source/build"
   PATH=$tools:$PATH "$tools/auditwheel" repair --only-plat --plat manylinux_2_36_x86_64 --wheel-dir "$out" \
     "$work"/wheel/fovea-*.whl >"$work/auditwheel.log" 2>&1 || { cat "$work/auditwheel.log" >&2 && return 1; }
 }
