@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 PROGRAM = os.environ["FOVEA_PROGRAM"]
 FRAMES = 12
-SETTINGS = ("camera.numbers=[2]", "camera.width=480", "camera.height=160", "camera.focal=270",
+SETTINGS = ("camera.numbers=[0]", "camera.width=480", "camera.height=160", "camera.focal=270",
             "camera.cx=238.5", "camera.cy=72.25", "lidar.columns=900")
 MILLIMETER = 1e-3
 
@@ -52,7 +52,7 @@ def drive() -> pathlib.Path:
 def map_file() -> pathlib.Path:
     path = folder() / "map.fovea"
     if not path.exists():
-        run("map", drive(), "-o", path, "--set", "surface.spacing_m=0.05", "--quiet")
+        run("map", drive(), "-o", path, "--cameras", 0, "--set", "surface.spacing_m=0.05", "--quiet")
     return path
 
 
