@@ -163,9 +163,10 @@ void add_export_command(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({8, 16}));
   command->add_option(
       "--where", arguments->where,
-      "Only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "
-      "views, spread, range, incidence (degrees), frame, camera, rule (measured, short-edges, "
-      "planar, centroid), matched (exposure, 0 or 1), interpolated, intensity");
+      "Only points that meet conditions, e.g. \"height < 2 and views >= 2\"; fields: x, y, z (m, "
+      "local), height (m above the road), views, spread, range, incidence (degrees), frame, "
+      "camera, rule (measured, short-edges, planar, centroid), matched (exposure, 0 or 1), "
+      "interpolated, intensity");
   add_if_missing_option(*command, arguments->if_missing);
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");

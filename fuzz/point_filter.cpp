@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_or_refuse<ConfigError>([&] {
     const PointFilter filter = PointFilter::parse(as_text(data, size));
     require(!filter.empty(), "a text has a condition");
-    for (std::size_t i = 0; i < tile.size(); ++i) filter.matches(tile, i);
+    for (std::size_t i = 0; i < tile.size(); ++i) filter.matches(tile, i, {});
   });
   return 0;
 }

@@ -6,6 +6,7 @@
 
 #include "fovea/errors.h"
 #include "fovea/map/map_file.h"
+#include "fovea/map/map_point_filter.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/numbered_records.h"
 #include "fovea/map/points_in_local.h"
@@ -39,11 +40,11 @@ class TileOrder {
   std::optional<TileId> last_;
 };
 
-PointCloud passing(const PointCloud& tile, const PointFilter& where) {
+PointCloud passing(std::size_t submap, const PointCloud& tile, const MapPointFilter& where) {
   if (where.empty()) return tile;
   std::vector<std::uint32_t> indices;
   for (std::uint32_t i = 0; i < tile.size(); ++i) {
-    if (where.matches(tile, i)) indices.push_back(i);
+    if (where.matches(submap, tile, i)) indices.push_back(i);
   }
   return tile.select(indices);
 }
@@ -256,12 +257,13 @@ void MapReader::for_each_stored_tile(
 PointCloud MapReader::all_points_local(const PointFilter& where) const {
   const Snapshot snapshot(file_->sqlite());
   const std::vector<RigidMotion> T_local_submap = submaps();
+  const MapPointFilter filter(*this, where);
   PointCloud points_local;
   for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
     const bool joins = points_local.empty() || tile.empty() ||
                        points_local.intensity.empty() == tile.intensity.empty();
     if (!joins) fail_at({submap, key}, "only some tiles have intensities", file_->where());
-    points_local.append(points_in_local(passing(tile, where), T_local_submap[submap]));
+    points_local.append(points_in_local(passing(submap, tile, filter), T_local_submap[submap]));
   });
   return points_local;
 }

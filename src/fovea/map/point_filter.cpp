@@ -15,29 +15,8 @@
 namespace fovea {
 namespace {
 
-using Value = double (*)(const PointCloud&, std::size_t);
-
 constexpr std::string_view kRuleField = "rule";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-constexpr std::array<std::pair<std::string_view, Value>, 10> kFields = {{
-    {"views", [](const PointCloud& p, std::size_t i) { return double(p.views[i]); }},
-    {"spread", [](const PointCloud& p, std::size_t i) { return double(p.spread[i]); }},
-    {"range", [](const PointCloud& p, std::size_t i) { return double(p.range[i]); }},
-    {"incidence",
-     [](const PointCloud& p, std::size_t i) { return double(p.incidence[i]) / kDegree; }},
-    {"frame", [](const PointCloud& p, std::size_t i) { return double(p.frame[i]); }},
-    {"camera", [](const PointCloud& p, std::size_t i) { return double(p.camera[i]); }},
-    {kRuleField,
-     [](const PointCloud& p, std::size_t i) { return double(rule_number(p.reason[i])); }},
-    {"matched", [](const PointCloud& p,
-                   std::size_t i) { return (p.reason[i] & kExposureMatched) != 0 ? 1.0 : 0.0; }},
-    {"interpolated", [](const PointCloud& p, std::size_t i) { return double(p.interpolated[i]); }},
-    {"intensity",
-     [](const PointCloud& p, std::size_t i) {
-       return p.intensity.empty() ? kNone : double(p.intensity[i]);
-     }},
-}};
 
 /// The number that a condition states; of a rule its name will do.
 std::optional<double> number_of(std::string_view field, std::string_view text) {
@@ -62,11 +41,39 @@ std::string_view trimmed(std::string_view text) {
 [[noreturn]] void reject(std::string_view condition) {
   throw ConfigError(fmt::format("the condition '{}' is not understood", condition), "--where",
                     "write FIELD OPERATOR NUMBER, joined by 'and', e.g. \"views >= 2 and range < "
-                    "10\"; fields are views, spread, range, incidence, frame, camera, rule, "
-                    "matched, interpolated, intensity");
+                    "10\"; fields are x, y, z, height, views, spread, range, incidence, frame, "
+                    "camera, rule, matched, interpolated, intensity");
 }
 
+using Cloud = const PointCloud&;
+using Index = std::size_t;
+using Place = const PointPlace&;
+
 }  // namespace
+
+const PointFilter::Field* PointFilter::find_field(std::string_view name) {
+  static constexpr std::array<Field, 14> kFields = {{
+      {"x", [](Cloud, Index, Place p) { return p.p_local.x(); }, Needs::kPosition},
+      {"y", [](Cloud, Index, Place p) { return p.p_local.y(); }, Needs::kPosition},
+      {"z", [](Cloud, Index, Place p) { return p.p_local.z(); }, Needs::kPosition},
+      {"height", [](Cloud, Index, Place p) { return p.height; }, Needs::kHeight},
+      {"views", [](Cloud p, Index i, Place) { return double(p.views[i]); }},
+      {"spread", [](Cloud p, Index i, Place) { return double(p.spread[i]); }},
+      {"range", [](Cloud p, Index i, Place) { return double(p.range[i]); }},
+      {"incidence", [](Cloud p, Index i, Place) { return double(p.incidence[i]) / kDegree; }},
+      {"frame", [](Cloud p, Index i, Place) { return double(p.frame[i]); }},
+      {"camera", [](Cloud p, Index i, Place) { return double(p.camera[i]); }},
+      {kRuleField, [](Cloud p, Index i, Place) { return double(rule_number(p.reason[i])); }},
+      {"matched",
+       [](Cloud p, Index i, Place) { return (p.reason[i] & kExposureMatched) != 0 ? 1.0 : 0.0; }},
+      {"interpolated", [](Cloud p, Index i, Place) { return double(p.interpolated[i]); }},
+      {"intensity", [](Cloud p, Index i,
+                       Place) { return p.intensity.empty() ? kNone : double(p.intensity[i]); }},
+  }};
+  const auto found = std::find_if(kFields.begin(), kFields.end(),
+                                  [name](const Field& field) { return field.name == name; });
+  return found == kFields.end() ? nullptr : &*found;
+}
 
 bool PointFilter::Condition::holds(double v) const {
   switch (op) {
@@ -102,14 +109,12 @@ PointFilter::Condition PointFilter::parse_condition(const std::string& text) {
        {"==", Operator::kEqual},
        {"=", Operator::kEqual},
        {"!=", Operator::kNotEqual}}};
-  const auto named = [](std::string_view name) {
-    return [name](const auto& entry) { return entry.first == name; };
-  };
-  const auto found_field = std::find_if(kFields.begin(), kFields.end(), named(field));
-  const auto found_sign = std::find_if(kOperators.begin(), kOperators.end(), named(sign));
+  const auto found_sign = std::find_if(kOperators.begin(), kOperators.end(),
+                                       [sign](const auto& entry) { return entry.first == sign; });
+  const Field* found_field = find_field(field);
   const std::optional<double> value = number_of(field, number);
-  if (found_field == kFields.end() || found_sign == kOperators.end() || !value) reject(text);
-  return {found_field->second, found_sign->second, *value};
+  if (found_field == nullptr || found_sign == kOperators.end() || !value) reject(text);
+  return {found_field, found_sign->second, *value};
 }
 
 PointFilter PointFilter::parse(std::string_view text) {
@@ -124,9 +129,22 @@ PointFilter PointFilter::parse(std::string_view text) {
   return filter;
 }
 
-bool PointFilter::matches(const PointCloud& tile, std::size_t index) const {
+bool PointFilter::needs_place() const {
+  return std::any_of(conditions_.begin(), conditions_.end(), [](const Condition& condition) {
+    return condition.field->needs != Needs::kColumns;
+  });
+}
+
+bool PointFilter::needs_height() const {
+  return std::any_of(conditions_.begin(), conditions_.end(), [](const Condition& condition) {
+    return condition.field->needs == Needs::kHeight;
+  });
+}
+
+bool PointFilter::matches(const PointCloud& tile, std::size_t index,
+                          const PointPlace& place) const {
   return std::all_of(conditions_.begin(), conditions_.end(), [&](const Condition& condition) {
-    return condition.holds(condition.value(tile, index));
+    return condition.holds(condition.field->value(tile, index, place));
   });
 }
 

@@ -32,7 +32,8 @@ std::vector<int> passing(const std::string& text) {
   const PointCloud points = four_points();
   std::vector<int> passed;
   for (int i = 0; i < 4; ++i) {
-    if (filter.matches(points, std::size_t(i))) passed.push_back(i);
+    const PointPlace place{{double(i), -2.0 * i, 0.5}, i - 0.5};
+    if (filter.matches(points, std::size_t(i), place)) passed.push_back(i);
   }
   return passed;
 }
@@ -54,6 +55,10 @@ TEST(PointFilter, EveryField) {
   EXPECT_THAT(passing("interpolated == 0"), ElementsAre(0, 3));
   EXPECT_THAT(passing("incidence < 29"), ElementsAre(0, 1));  // 28.6 degrees
   EXPECT_THAT(passing("incidence < 28"), ElementsAre(0));
+  EXPECT_THAT(passing("x >= 2"), ElementsAre(2, 3));
+  EXPECT_THAT(passing("y < -3"), ElementsAre(2, 3));
+  EXPECT_THAT(passing("z == 0.5 and x < 1"), ElementsAre(0));
+  EXPECT_THAT(passing("height < 1"), ElementsAre(0, 1));
 }
 
 TEST(PointFilter, RulesByNameOrNumber) {
@@ -70,20 +75,39 @@ TEST(PointFilter, UnknownValuesMeetNothing) {
   EXPECT_THAT(passing("incidence >= 0"), ElementsAre(0, 1, 3));
   EXPECT_THAT(passing("incidence != 0"), ElementsAre(1, 3));
   EXPECT_THAT(passing("intensity >= 0"), ElementsAre());  // the map has none
+  EXPECT_FALSE(PointFilter::parse("height != 0").matches(four_points(), 0, {}));
 }
 
 TEST(PointFilter, ConditionsHoldTogether) {
   EXPECT_THAT(passing("views >= 1 and range < 12"), ElementsAre(1, 2));
   EXPECT_THAT(passing("views >= 1  and  range<12 and frame==7"), ElementsAre(2));
-  EXPECT_TRUE(PointFilter().matches(four_points(), 0));
+  EXPECT_TRUE(PointFilter().matches(four_points(), 0, {}));
   EXPECT_TRUE(PointFilter().empty());
 }
 
 TEST(PointFilter, SaysWhatItDoesNotUnderstand) {
-  for (const char* text :
-       {"", " ", "views", "views >=", ">= 2", "view >= 2", "views >= two", "views >= 2 3",
-        "views => 2", "views >= 2 and", "and views >= 2", "views >= 2 or range < 3", "views >= nan",
-        "views >= 1e999", "rule == flat", "views == planar", "views >= 2,range<3"}) {
+  for (const char* text : {"",
+                           " ",
+                           "views",
+                           "views >=",
+                           ">= 2",
+                           "view >= 2",
+                           "views >= two",
+                           "views >= 2 3",
+                           "views => 2",
+                           "views >= 2 and",
+                           "and views >= 2",
+                           "views >= 2 or range < 3",
+                           "views >= nan",
+                           "views >= 1e999",
+                           "rule == flat",
+                           "views == planar",
+                           "X > 2",
+                           "height",
+                           "height < low",
+                           "xy > 2",
+                           "p.x < 2",
+                           "views >= 2,range<3"}) {
     try {
       PointFilter::parse(text);
       ADD_FAILURE() << text;

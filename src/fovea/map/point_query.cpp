@@ -7,6 +7,7 @@
 
 #include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/map/map_point_filter.h"
 #include "fovea/map/points_in_local.h"
 
 namespace fovea {
@@ -20,8 +21,9 @@ bool is_near(const PointQuery::Box& box, const Eigen::Vector3d& center_local, do
 }
 
 /// The points of a tile that pass, in the frame `local`.
-PointCloud passing_points(const PointCloud& tile, const RigidMotion& T_local_submap,
-                          const PointQuery& query, const PointFilter& filter) {
+PointCloud passing_points(std::size_t submap, const PointCloud& tile,
+                          const RigidMotion& T_local_submap, const PointQuery& query,
+                          const MapPointFilter& filter) {
   const auto is_inside = [&](const PointQuery::Box& box, std::size_t i) {
     const Eigen::Vector3d p = T_local_submap * (tile.origin + tile.position[i].cast<double>());
     return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
@@ -29,7 +31,7 @@ PointCloud passing_points(const PointCloud& tile, const RigidMotion& T_local_sub
   std::vector<std::uint32_t> passing;
   for (std::size_t i = 0; i < tile.size(); ++i) {
     if (query.box && !is_inside(*query.box, i)) continue;
-    if (filter.matches(tile, i)) passing.push_back(static_cast<std::uint32_t>(i));
+    if (filter.matches(submap, tile, i)) passing.push_back(static_cast<std::uint32_t>(i));
   }
   return points_in_local(tile.select(passing), T_local_submap);
 }
@@ -44,8 +46,9 @@ void check(const PointQuery& query) {
 
 PointCloud find_points(const MapReader& map, const PointQuery& query) {
   check(query);
-  const PointFilter filter = query.where.empty() ? PointFilter() : PointFilter::parse(query.where);
+  const PointFilter where = query.where.empty() ? PointFilter() : PointFilter::parse(query.where);
   const std::shared_ptr<const void> state = map.hold_state();
+  const MapPointFilter filter(map, where);
   const double tile_size = map_tile_size(map.meta());
   const std::vector<RigidMotion> T_local_submap = map.submaps();
   PointCloud points_local;
@@ -53,7 +56,7 @@ PointCloud find_points(const MapReader& map, const PointQuery& query) {
     const Eigen::Vector3d middle(id.key.x + 0.5, id.key.y + 0.5, id.key.z + 0.5);
     const RigidMotion& T = T_local_submap.at(id.submap);
     if (query.box && !is_near(*query.box, T * (tile_size * middle), tile_size)) continue;
-    const PointCloud found = passing_points(map.read_tile(id), T, query, filter);
+    const PointCloud found = passing_points(id.submap, map.read_tile(id), T, query, filter);
     if (!found.empty()) points_local.append(found);
   }
   return points_local;

@@ -20,6 +20,7 @@ PointStream::PointStream(const MapReader& map, const PointChoice& choice)
     : map_(map),
       choice_(choice),
       held_state_(map.hold_state()),
+      where_(map, choice.where),
       T_local_submap_(map.submaps()),
       georeference_(choice.crs, map_origin(map.meta()), "the map's table 'meta'"),
       display_(color_display(choice.exposure, map.frames())) {
@@ -33,24 +34,24 @@ PointStream::PointStream(const MapReader& map, const PointChoice& choice)
   }
 }
 
-bool PointStream::is_chosen(const PointCloud& tile, std::size_t index) const {
+bool PointStream::is_chosen(std::size_t submap, const PointCloud& tile, std::size_t index) const {
   return (choice_.include_uncolored || tile.camera[index] != kNoCamera) &&
-         choice_.where.matches(tile, index);
+         where_.matches(submap, tile, index);
 }
 
 std::size_t PointStream::count_chosen() const {
   std::size_t count = 0;
-  map_.for_each_tile([&](std::size_t, const TileKey&, const PointCloud& tile) {
-    for (std::size_t i = 0; i < tile.size(); ++i) count += is_chosen(tile, i);
+  map_.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
+    for (std::size_t i = 0; i < tile.size(); ++i) count += is_chosen(submap, tile, i);
   });
   return count;
 }
 
 CodeCounts PointStream::count_codes() const {
   CodeCounts counts{};
-  map_.for_each_tile([&](std::size_t, const TileKey&, const PointCloud& tile) {
+  map_.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
     for (std::size_t i = 0; i < tile.size(); ++i) {
-      if (!is_chosen(tile, i) || tile.camera[i] == kNoCamera) continue;
+      if (!is_chosen(submap, tile, i) || tile.camera[i] == kNoCamera) continue;
       ++counts[*std::max_element(tile.color[i].code.begin(), tile.color[i].code.end())];
     }
   });
@@ -94,7 +95,7 @@ void PointStream::for_each_block(const std::function<void(std::span<const Export
   };
   map_.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
     for (std::size_t i = 0; i < tile.size(); ++i) {
-      if (!is_chosen(tile, i)) continue;
+      if (!is_chosen(submap, tile, i)) continue;
       block.push_back(point(tile, i, submap));
       if (block.size() == kBlockPoints) hand_over();
     }
@@ -111,7 +112,7 @@ void PointStream::append_tile(const TileId& id, std::vector<ExportPoint>& points
     tile = stored->cloud();
   }
   for (std::size_t i = 0; i < tile.size(); ++i) {
-    if (is_chosen(tile, i)) points.push_back(point(tile, i, id.submap));
+    if (is_chosen(id.submap, tile, i)) points.push_back(point(tile, i, id.submap));
   }
 }
 

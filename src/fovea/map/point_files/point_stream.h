@@ -11,8 +11,8 @@
 
 #include "fovea/geometry/georeference.h"
 #include "fovea/map/color_display.h"
+#include "fovea/map/map_point_filter.h"
 #include "fovea/map/map_store.h"
-#include "fovea/map/point_filter.h"
 
 namespace fovea {
 
@@ -80,7 +80,7 @@ class PointStream {
   void require_all(std::size_t streamed) const;
 
  private:
-  bool is_chosen(const PointCloud& tile, std::size_t index) const;
+  bool is_chosen(std::size_t submap, const PointCloud& tile, std::size_t index) const;
   ExportPoint point(const PointCloud& tile, std::size_t index, std::size_t submap) const;
   std::size_t count_chosen() const;
   CodeCounts count_codes() const;
@@ -88,6 +88,7 @@ class PointStream {
   const MapReader& map_;
   const PointChoice& choice_;
   std::shared_ptr<const void> held_state_;
+  MapPointFilter where_;
   std::vector<RigidMotion> T_local_submap_;
   Georeference georeference_;
   ColorDisplay display_;
