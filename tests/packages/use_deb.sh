@@ -7,16 +7,22 @@ version=$1
 
 say() { echo "-- $*"; }
 
-# The page and the description of the map, as the browser gets them.
+# The page and the description of the map, as the browser gets them. A map that grows is there after a while.
 fetch_page() { # URL
   python3 - "$1" <<'END'
-import json, sys, urllib.request
+import json, sys, time, urllib.request
 url = sys.argv[1].rstrip("/")
-read = lambda path: urllib.request.urlopen(f"{url}/{path}", timeout=60).read()
+def read(path):
+    return urllib.request.urlopen(f"{url}/{path}", timeout=60).read()
 assert b"<script" in read(""), "no page"
-points = json.loads(read("map.json"))["points"]
-assert points > 10000, points
-print(f"the page shows a map of {points} points")
+for _ in range(240):
+    shown = json.loads(read("map.json"))
+    if shown["tileset"]:
+        break
+    time.sleep(0.5)
+assert shown["points"] > 10000, shown
+json.loads(read(shown["tileset"]))
+print(f"the page shows a map of {shown['points']} points")
 END
 }
 
@@ -32,7 +38,7 @@ view_and_fetch() { # COMMAND...: a command that prints the address of its page
   [[ -n $url ]] || { cat view.log && return 1; }
   fetch_page "$url"
   kill -INT $viewer
-  wait $viewer || true
+  wait $viewer || [[ $? -eq 130 ]]
 }
 
 say "first command: apt-get install ./fovea.deb"
@@ -40,8 +46,9 @@ apt-get install -y -qq --no-install-recommends /packages/fovea_*.deb >install.lo
 [[ $(fovea --version) == "fovea $version" ]]
 say "a drive"
 fovea simulate -o street --format generic --frames 12 --quiet
-say "second command: fovea view, map and evaluate"
-fovea map street -o street.fovea --hold-out 8:4 --quiet
+say "second command: fovea map --live"
+view_and_fetch fovea map street -o street.fovea --hold-out 8:4 --live
+say "fovea view, fovea evaluate"
 view_and_fetch fovea view street.fovea --drive street --no-browser --port 0
 fovea evaluate street.fovea street >evaluate.log
 say "import fovea"

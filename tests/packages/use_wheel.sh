@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Runs as root in a bare Debian 12 with python3-venv and the wheel in /packages: installs and uses it in two virtual
-# environments, with the newest NumPy and with NumPy 1.
+# environments, with the newest NumPy and with NumPy 1. The exit code is 77 if PyPI is unreachable.
 set -euo pipefail
 cd /tmp
 export LC_ALL=C.UTF-8
 version=$1
 python3 -m venv new
+new/bin/pip download --quiet --retries 0 --timeout 15 --no-deps --dest downloads numpy || exit 77
 echo "-- first command: pip install fovea.whl"
 new/bin/pip install --quiet --disable-pip-version-check /packages/fovea-*.whl
 [[ $(new/bin/fovea --version) == "fovea $version" ]]
