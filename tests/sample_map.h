@@ -191,6 +191,15 @@ inline void write_sample_map(const std::filesystem::path& path) {
   writer->commit();
 }
 
+/// Two points in one tile.
+inline void write_map_without_intensity(const std::filesystem::path& path) {
+  const auto writer = MapWriter::create(path, false);
+  writer->put_meta("map.tile_size_m", "4");
+  writer->put_submap(0, RigidMotion::Identity());
+  writer->put_tile({0, {0, 0, 0}}, one_point_each({{1, 2, 3}, {3, 2, 1}}));
+  writer->commit();
+}
+
 /// Points of the sample map in the order of its file, with their positions in the local frame.
 inline void for_each_sample_point(
     const std::function<void(const Eigen::Vector3d& p_local, const PointCloud& tile,

@@ -10,7 +10,8 @@
 namespace fovea {
 namespace {
 
-std::string pcd_header(const PointStream& points, const PointFileOptions& options) {
+std::string pcd_header(const PointStream& points, const PointFileOptions& options,
+                       bool has_intensity) {
   std::string text =
       fmt::format("# .PCD v0.7 - Point Cloud Data file format\n# fovea {}\n", version());
   const Georeference& georeference = points.georeference();
@@ -25,13 +26,15 @@ std::string pcd_header(const PointStream& points, const PointFileOptions& option
                                                  : Color{"rgb", "4", "F", "1"};
   return text + fmt::format(
                     "VERSION 0.7\n"
-                    "FIELDS x y z {2} camera frame range interpolated views spread reason\n"
-                    "SIZE {0} {0} {0} {3} 1 4 4 1 1 1 1\n"
-                    "TYPE F F F {4} I I F U U U U\n"
-                    "COUNT 1 1 1 {5} 1 1 1 1 1 1 1\n"
+                    "FIELDS x y z {2} camera frame range interpolated views spread reason{6}\n"
+                    "SIZE {0} {0} {0} {3} 1 4 4 1 1 1 1{7}\n"
+                    "TYPE F F F {4} I I F U U U U{8}\n"
+                    "COUNT 1 1 1 {5} 1 1 1 1 1 1 1{9}\n"
                     "WIDTH {1}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {1}\nDATA binary\n",
                     options.doubles() ? '8' : '4', points.figures().points, color.fields,
-                    color.size, color.type, color.count);
+                    color.size, color.type, color.count, has_intensity ? " intensity" : "",
+                    has_intensity ? " 4" : "", has_intensity ? " F" : "",
+                    has_intensity ? " 1" : "");
 }
 
 }  // namespace

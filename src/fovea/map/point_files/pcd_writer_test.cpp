@@ -11,6 +11,7 @@
 #include "../../../../tests/sample_map.h"
 #include "../../../../tests/temporary_folder.h"
 #include "fovea/errors.h"
+#include "fovea/map/point_files/pcd_reader.h"
 
 namespace fovea::pcd_writer_test {
 
@@ -78,6 +79,7 @@ class PcdWriter : public testing::Test {
           EXPECT_EQ(pcd.at<std::uint8_t>(row, "views"), tile.views[i]);
           EXPECT_EQ(pcd.at<std::uint8_t>(row, "spread"), tile.spread[i]);
           EXPECT_EQ(pcd.at<std::uint8_t>(row, "reason"), tile.reason[i]);
+          EXPECT_EQ(pcd.at<float>(row, "intensity"), tile.intensity[i]);
           ++row;
         });
     EXPECT_EQ(row, pcd.rows.size());
@@ -91,7 +93,7 @@ TEST_F(PcdWriter, EveryFieldOfEveryPoint) {
   const std::string count = std::to_string(figures.points);
   EXPECT_THAT(pcd.header.at("VERSION"), ElementsAre("0.7"));
   EXPECT_THAT(pcd.header.at("TYPE"),
-              ElementsAre("F", "F", "F", "F", "I", "I", "F", "U", "U", "U", "U"));
+              ElementsAre("F", "F", "F", "F", "I", "I", "F", "U", "U", "U", "U", "F"));
   EXPECT_THAT(pcd.header.at("WIDTH"), ElementsAre(count));
   EXPECT_THAT(pcd.header.at("HEIGHT"), ElementsAre("1"));
   EXPECT_THAT(pcd.header.at("POINTS"), ElementsAre(count));
@@ -112,6 +114,27 @@ TEST_F(PcdWriter, CoordinatesOfTheEarthAreDoubles) {
   const Pcd pcd(folder_ / "a.pcd");
   EXPECT_EQ(pcd.header.at("SIZE").front(), "8");
   EXPECT_GT(std::abs(pcd.at<double>(0, "x")), 4e6);
+}
+
+TEST_F(PcdWriter, AMapWithoutIntensitiesHasNoSuchField) {
+  write_map_without_intensity(folder_ / "b.fovea");
+  write_pcd(MapReader(folder_ / "b.fovea"), folder_ / "b.pcd");
+  const Pcd pcd(folder_ / "b.pcd");
+  EXPECT_EQ(pcd.rows.size(), 2u);
+  EXPECT_EQ(pcd.header.at("FIELDS").back(), "reason");
+  for (const char* line : {"SIZE", "TYPE", "COUNT"}) EXPECT_EQ(pcd.header.at(line).size(), 11u);
+}
+
+TEST_F(PcdWriter, FoveaReadsItBack) {
+  const ExportFigures figures = write();
+  const CloudFile cloud = read_pcd(folder_ / "a.pcd", {0, 0, 0});
+  EXPECT_EQ(cloud.points.size(), figures.points);
+  std::size_t row = 0;
+  for_each_sample_point([&](const Eigen::Vector3d&, const PointCloud& tile, std::size_t i) {
+    if (tile.camera[i] == kNoCamera) return;
+    EXPECT_EQ(cloud.points.frame.at(row), tile.frame[i]);
+    EXPECT_EQ(cloud.points.interpolated.at(row++), tile.interpolated[i]);
+  });
 }
 
 TEST_F(PcdWriter, ReplacesOnlyWithForce) {

@@ -10,7 +10,8 @@
 namespace fovea {
 namespace {
 
-std::string ply_header(const PointStream& points, const PointFileOptions& options) {
+std::string ply_header(const PointStream& points, const PointFileOptions& options,
+                       bool has_intensity) {
   std::string text =
       fmt::format("ply\nformat binary_little_endian 1.0\ncomment fovea {}\n", version());
   const Georeference& georeference = points.georeference();
@@ -30,10 +31,12 @@ std::string ply_header(const PointStream& points, const PointFileOptions& option
   for (const char* name : {"red", "green", "blue"}) {
     text += fmt::format("property {} {}\n", color, name);
   }
-  return text +
-         "property char camera\n"
-         "property int frame\nproperty float range\nproperty uchar interpolated\n"
-         "property uchar views\nproperty uchar spread\nproperty uchar reason\nend_header\n";
+  text +=
+      "property char camera\n"
+      "property int frame\nproperty float range\nproperty uchar interpolated\n"
+      "property uchar views\nproperty uchar spread\nproperty uchar reason\n";
+  if (has_intensity) text += "property float intensity\n";
+  return text + "end_header\n";
 }
 
 }  // namespace

@@ -9,8 +9,9 @@ namespace fovea {
 
 /// Writes the map's points, tile by tile, as binary little endian PLY: x y z (m), red green blue
 /// (uchar), camera (char), frame (int), range (float, m), interpolated, views, spread, reason
-/// (uchar); comments tell the coordinates. The file appears when it is whole. OutputError if it
-/// cannot be written or exists and `force` is false; InputError as PointStream.
+/// (uchar), intensity (float, 0-1) if the map has it; comments tell the coordinates. The file
+/// appears when it is whole. OutputError if it cannot be written or exists and `force` is false;
+/// InputError as PointStream.
 ExportFigures write_ply(const MapReader& map, const std::filesystem::path& path,
                         const PointFileOptions& options = {});
 

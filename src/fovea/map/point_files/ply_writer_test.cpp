@@ -11,6 +11,7 @@
 #include "../../../../tests/temporary_folder.h"
 #include "fovea/errors.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/map/point_files/ply_reader.h"
 #include "fovea/platform.h"
 
 namespace fovea::ply_writer_test {
@@ -106,13 +107,13 @@ TEST_F(PlyWriter, ColoredPointsWithAllProperties) {
   const ExportFigures figures = write();
   const Ply ply(folder_ / "a.ply");
   const std::vector<std::pair<std::string, std::string>> expected_properties = {
-      {"x", "float"},     {"y", "float"},
-      {"z", "float"},     {"red", "uchar"},
-      {"green", "uchar"}, {"blue", "uchar"},
-      {"camera", "char"}, {"frame", "int"},
-      {"range", "float"}, {"interpolated", "uchar"},
-      {"views", "uchar"}, {"spread", "uchar"},
-      {"reason", "uchar"}};
+      {"x", "float"},      {"y", "float"},
+      {"z", "float"},      {"red", "uchar"},
+      {"green", "uchar"},  {"blue", "uchar"},
+      {"camera", "char"},  {"frame", "int"},
+      {"range", "float"},  {"interpolated", "uchar"},
+      {"views", "uchar"},  {"spread", "uchar"},
+      {"reason", "uchar"}, {"intensity", "float"}};
   EXPECT_EQ(ply.properties, expected_properties);
   EXPECT_EQ(ply.comments[0], std::string("fovea ") + version());
   EXPECT_THAT(ply.comments,
@@ -138,6 +139,7 @@ TEST_F(PlyWriter, ColoredPointsWithAllProperties) {
     EXPECT_EQ(at("views"), tile.views[i]);
     EXPECT_EQ(at("spread"), tile.spread[i]);
     EXPECT_EQ(at("reason"), tile.reason[i]);
+    EXPECT_EQ(at("intensity"), tile.intensity[i]);
     ++row;
   });
   EXPECT_EQ(row, ply.count);
@@ -203,6 +205,41 @@ TEST_F(PlyWriter, UncolouredPointsAreLeftOutByTheirCamera) {
   options.points.where = PointFilter::parse("camera == -1");
   options.force = true;
   EXPECT_EQ(write(options).points + coloured.points, sample_tile_map().size());
+}
+
+TEST_F(PlyWriter, AMapWithoutIntensitiesHasNoSuchProperty) {
+  write_map_without_intensity(folder_ / "b.fovea");
+  const MapReader map(folder_ / "b.fovea");
+  write_ply(map, folder_ / "b.ply");
+  const Ply ply(folder_ / "b.ply");
+  EXPECT_EQ(ply.count, 2u);
+  EXPECT_EQ(ply.properties.back().first, "reason");
+}
+
+TEST_F(PlyWriter, PointsOfADriveWithoutIntensitiesHaveZero) {
+  write_map_without_intensity(folder_ / "b.fovea");
+  {
+    const auto writer = MapWriter::open(folder_ / "b.fovea");
+    PointCloud more = one_point_each({{1, 1, 1}});
+    more.intensity = {0.5f};
+    writer->put_submap(1, RigidMotion::Identity());
+    writer->put_tile({1, {0, 0, 0}}, more);
+    writer->commit();
+  }
+  write_ply(MapReader(folder_ / "b.fovea"), folder_ / "b.ply");
+  EXPECT_THAT(Ply(folder_ / "b.ply").columns.at("intensity"), ElementsAre(0, 0, 0.5));
+}
+
+TEST_F(PlyWriter, FoveaReadsItBack) {
+  const ExportFigures figures = write();
+  const CloudFile cloud = read_ply(folder_ / "a.ply", {0, 0, 0});
+  EXPECT_EQ(cloud.points.size(), figures.points);
+  std::size_t row = 0;
+  for_each_sample_point([&](const Eigen::Vector3d&, const PointCloud& tile, std::size_t i) {
+    if (tile.camera[i] == kNoCamera) return;
+    EXPECT_EQ(cloud.points.frame.at(row), tile.frame[i]);
+    EXPECT_EQ(cloud.points.interpolated.at(row++), tile.interpolated[i]);
+  });
 }
 
 TEST_F(PlyWriter, ReplacesOnlyWithForce) {

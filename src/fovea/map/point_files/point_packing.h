@@ -47,9 +47,9 @@ void write_points(const PointStream& points, std::ostream& stream, Pack&& pack) 
   });
 }
 
-/// Writes a file of a header and all points: position, color, provenance. It appears when it is
-/// whole.
-/// @param header      the text of `header(points, options)`
+/// Writes a file of a header and all points: position, color, provenance, and the intensity
+/// (float) if the map has it. The file appears when it is whole.
+/// @param header      the text of `header(points, options, has_intensity)`
 /// @param pack_color  packs a color of 8 bits: `pack_color(color, packer)`
 template <class Header, class PackColor>
 ExportFigures write_point_file(const MapReader& map, const std::filesystem::path& path,
@@ -57,7 +57,8 @@ ExportFigures write_point_file(const MapReader& map, const std::filesystem::path
                                PackColor&& pack_color) {
   OutputFile file(path, options.force);
   const PointStream points(map, options.points);
-  file.stream() << header(points, options);
+  const bool has_intensity = points.has_intensity();
+  file.stream() << header(points, options, has_intensity);
   write_points(points, file.stream(), [&](const ExportPoint& point, BytePacker& packer) {
     pack_position(point, options.doubles(), packer);
     if (options.points.deep_colors) {
@@ -66,6 +67,7 @@ ExportFigures write_point_file(const MapReader& map, const std::filesystem::path
       pack_color(point.color, packer);
     }
     pack_provenance(point, packer);
+    if (has_intensity) packer.put(point.intensity);
   });
   file.commit();
   return points.figures();

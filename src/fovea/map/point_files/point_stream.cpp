@@ -85,6 +85,16 @@ ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
   return point;
 }
 
+bool PointStream::has_intensity() const {
+  std::optional<std::size_t> last_submap;
+  for (const auto& [id, count] : map_.tile_sizes()) {
+    if (count == 0 || id.submap == last_submap) continue;
+    if (!map_.read_tile(id).intensity.empty()) return true;
+    last_submap = id.submap;
+  }
+  return false;
+}
+
 void PointStream::for_each_block(const std::function<void(std::span<const ExportPoint>)>& f) const {
   std::size_t streamed = 0;
   std::vector<ExportPoint> block;

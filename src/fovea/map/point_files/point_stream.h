@@ -63,6 +63,9 @@ class PointStream {
 
   const ExportFigures& figures() const { return figures_; }
   const Georeference& georeference() const { return georeference_; }
+  /// Whether a drive of the map has intensities. Reads one tile of each submap at most; InputError
+  /// if one is damaged. Not after release_state().
+  bool has_intensity() const;
   /// Of the colors: "exposure ...".
   const std::string& exposure() const {
     return deep_display_ ? deep_display_->description() : display_.description();
