@@ -29,7 +29,7 @@ unpack_source() {
   if cmp -s viewer/package-lock.json viewer/node_modules/.installed-lock.json; then
     cp -a viewer/node_modules "$source/viewer/"
   fi
-  "$source/scripts/setup.sh" build product viewer python
+  "$source/scripts/setup.sh" build product viewer python packages
 }
 
 # Both packages are built in one tree, as all but the Python module has the same objects.

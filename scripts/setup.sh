@@ -10,7 +10,7 @@ parts=()
 may_install=true
 for argument in "$@"; do
   case $argument in
-    build | product | viewer | python | tests) parts+=("$argument") ;;
+    build | product | viewer | python | tests | packages) parts+=("$argument") ;;
     --no-install) may_install=false ;;
     *)
       echo "setup: unknown part or option $argument, see scripts/packages.txt" >&2
