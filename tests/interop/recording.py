@@ -1,6 +1,7 @@
 """A drive as the messages that a vehicle with ROS would have recorded, written by rosbags."""
 import csv
 import dataclasses
+import inspect
 import itertools
 import pathlib
 import tomllib
@@ -63,7 +64,7 @@ class Vehicle:
     def make(self, name: str, /, **fields: Any) -> Any:
         """A message; fields that it lacks in this version of ROS are left out."""
         kind = self.store.types[name]
-        names = {field.name for field in dataclasses.fields(kind)}
+        names = inspect.signature(kind).parameters
         return kind(**{key: value for key, value in fields.items() if key in names})
 
     def header(self, time: int, frame: str) -> Any:

@@ -3,6 +3,7 @@ import atexit
 import functools
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 from typing import Any
@@ -12,8 +13,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+import recording
+
 PROGRAM = os.environ["FOVEA_PROGRAM"]
-FRAMES = 12
+FRAMES = 20
 SETTINGS = ("camera.numbers=[0]", "camera.width=480", "camera.height=160", "camera.focal=270",
             "camera.cx=238.5", "camera.cy=72.25", "lidar.columns=900")
 MILLIMETER = 1e-3
@@ -54,6 +57,23 @@ def map_file() -> pathlib.Path:
     if not path.exists():
         run("map", drive(), "-o", path, "--cameras", 0, "--set", "surface.spacing_m=0.05", "--quiet")
     return path
+
+
+def recorded_drive() -> pathlib.Path:
+    """The sample with poses, in a folder of the same name: a map's digest includes the name of its drive."""
+    path = folder() / "recorded" / "drive"
+    if not path.exists():
+        shutil.copytree(drive(), path)
+        recording.write_poses(path)
+    return path
+
+
+@functools.lru_cache(maxsize=None)
+def digest(path: pathlib.Path) -> str:
+    """That of the map of a drive."""
+    output = path.parent / "map.fovea"
+    run("map", path, "-o", output, "--cameras", 0, "--quiet", "--force")
+    return run("info", "--digest", output)
 
 
 def export(name: str, *options: str) -> pathlib.Path:

@@ -1,7 +1,5 @@
 """Recordings that rosbags writes give the map of the drive that was recorded."""
-import functools
 import pathlib
-import shutil
 import unittest
 
 import rosbags.rosbag1
@@ -12,26 +10,6 @@ import recording
 import sample
 
 
-@functools.lru_cache(maxsize=None)
-def recorded_drive() -> pathlib.Path:
-    """The sample with poses, in a folder of the same name: a map's digest includes the name of its drive."""
-    path = sample.folder() / "recorded" / "drive"
-    shutil.copytree(sample.drive(), path, dirs_exist_ok=True)
-    recording.write_poses(path)
-    return path
-
-
-def digest(drive: pathlib.Path) -> str:
-    path = drive.parent / "map.fovea"
-    sample.run("map", drive, "-o", path, "--cameras", 0, "--quiet", "--force")
-    return sample.run("info", "--digest", path)
-
-
-@functools.lru_cache(maxsize=None)
-def expected_digest() -> str:
-    return digest(recorded_drive())
-
-
 def write_ros2(path: pathlib.Path, plugin: StoragePlugin, compression: CompressionMode) -> None:
     store = recording.ROS2
     writer = rosbags.rosbag2.Writer(path, version=9, storage_plugin=plugin)
@@ -39,7 +17,7 @@ def write_ros2(path: pathlib.Path, plugin: StoragePlugin, compression: Compressi
         writer.set_compression(compression, CompressionFormat.ZSTD)
     connections = {}
     with writer:
-        for recorded in recording.Vehicle(recorded_drive(), store).messages():
+        for recorded in recording.Vehicle(sample.recorded_drive(), store).messages():
             if recorded.topic not in connections:
                 connections[recorded.topic] = writer.add_connection(recorded.topic, recorded.type, typestore=store)
             data = store.serialize_cdr(recorded.message, recorded.type)
@@ -53,7 +31,7 @@ def write_ros1(path: pathlib.Path, compression: rosbags.rosbag1.Writer.Compressi
         writer.set_compression(compression)
     connections = {}
     with writer:
-        for recorded in recording.Vehicle(recorded_drive(), store).messages():
+        for recorded in recording.Vehicle(sample.recorded_drive(), store).messages():
             if recorded.topic not in connections:
                 connections[recorded.topic] = writer.add_connection(recorded.topic, recorded.type, typestore=store)
             data = store.serialize_ros1(recorded.message, recorded.type)
@@ -65,7 +43,7 @@ class RosbagsTest(unittest.TestCase):
         converted = sample.folder() / f"from_{path.name}" / "drive"
         converted.parent.mkdir()
         sample.run("convert", path, "-o", converted, "--quiet")
-        self.assertEqual(digest(converted), expected_digest())
+        self.assertEqual(sample.digest(converted), sample.digest(sample.recorded_drive()))
 
     def test_ros2(self):
         for plugin in StoragePlugin:
