@@ -56,6 +56,16 @@ int numbers_of_first_line(std::string_view text) {
   return numbers;
 }
 
+/// Whether a text is as many numbers as a world file has, one a line.
+bool is_world_file(std::string_view text) {
+  std::istringstream lines{std::string(text)};
+  int numbers = 0;
+  for (std::string line; std::getline(lines, line); ++numbers) {
+    if (numbers_of_first_line(line) != 1) return false;
+  }
+  return numbers == 6;
+}
+
 /// Kind of a text that begins with '{', by its first key.
 ContentKind kind_of_json_object(std::string_view text) {
   const std::string_view body = without_blanks(text.substr(1));
@@ -107,12 +117,14 @@ ContentKind content_kind_of(const std::filesystem::path& file) {
   if (head.starts_with("glTF")) return ContentKind::kGlb;
   if (begins_with_tag(text, "<!doctype html") || begins_with_tag(text, "<html"))
     return ContentKind::kHtml;
+  if (text.starts_with("<PAMDataset")) return ContentKind::kRasterAuxiliary;
   if (text.starts_with('{')) return kind_of_json_object(text);
   if (text.starts_with("frame,time_ns,")) return ContentKind::kPoseTable;
   if (text.starts_with("index,time_ns,")) return ContentKind::kFrameTable;
   if (text.starts_with("# Results\n\n    fovea reproduce")) return ContentKind::kMarkdown;
   const int numbers = numbers_of_first_line(text);
   if (numbers == 12) return ContentKind::kPoses;
+  if (numbers == 1 && is_world_file(text)) return ContentKind::kWorldFile;
   return numbers == 8 ? ContentKind::kTrajectory : ContentKind::kOther;
 }
 
@@ -144,6 +156,10 @@ const char* describe(ContentKind kind) {
       return "a glTF file";
     case ContentKind::kPng:
       return "a PNG image";
+    case ContentKind::kWorldFile:
+      return "a world file";
+    case ContentKind::kRasterAuxiliary:
+      return "an XML file about a picture";
     case ContentKind::kPoses:
       return "a pose file";
     case ContentKind::kTrajectory:

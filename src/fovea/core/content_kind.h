@@ -19,8 +19,10 @@ enum class ContentKind {
   kLas,
   kGlb,
   kPng,
-  kPoses,       ///< 12 numbers a line
-  kTrajectory,  ///< 8 numbers a line: TUM
+  kWorldFile,        ///< 6 numbers, one a line: where a picture lies
+  kRasterAuxiliary,  ///< XML of GDAL: the CRS of a picture
+  kPoses,            ///< 12 numbers a line
+  kTrajectory,       ///< 8 numbers a line: TUM
   kGeoJson,
   kPoseTable,   ///< CSV of `localize`
   kFrameTable,  ///< CSV of `export --format frames` and `--format csv`

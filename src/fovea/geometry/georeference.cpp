@@ -71,6 +71,7 @@ struct Georeference::Utm {
   double false_northing() const { return north ? 0 : kFalseNorthingSouth; }
   int epsg() const { return (north ? 32600 : 32700) + zone; }
   std::string name() const { return fmt::format("{}{}", zone, north ? 'N' : 'S'); }
+  std::string crs_name() const { return "WGS 84 / UTM zone " + name(); }
 
   /// Not through UTMUPS, which refuses points beyond the zone's borders.
   Eigen::Vector3d from_local(const Eigen::Vector3d& p_local) const {
@@ -149,15 +150,19 @@ std::string Georeference::wkt1() const {
         origin_ ? R"w(AXIS["East",EAST],AXIS["North",NORTH])w"
                 : R"w(AXIS["X",OTHER],AXIS["Y",OTHER])w");
   }
-  const std::string name = fmt::format("WGS 84 / UTM zone {}", utm_->name());
-  return fmt::format(
-      R"w(COMPD_CS["{0} + Ellipsoid (metre)",PROJCS["{0}",{1},PROJECTION["Transverse_Mercator"],)w"
-      R"w(PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",{2}],)w"
-      R"w(PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],)w"
-      R"w(PARAMETER["false_northing",{3}],UNIT["metre",1,AUTHORITY["EPSG","9001"]],)w"
-      R"w(AXIS["Easting",EAST],AXIS["Northing",NORTH],AUTHORITY["EPSG","{4}"]],{5}])w",
-      name, kWgs84GeographicWkt1, utm_->central_meridian(), utm_->false_northing(), utm_->epsg(),
-      kEllipsoidalHeightWkt1);
+  return fmt::format(R"w(COMPD_CS["{} + Ellipsoid (metre)",{},{}])w", utm_->crs_name(),
+                     wkt1_in_plan(), kEllipsoidalHeightWkt1);
+}
+
+std::string Georeference::wkt1_in_plan() const {
+  if (crs_ != Crs::kUtm) return wkt1();
+  return fmt::format(R"w(PROJCS["{}",{},PROJECTION["Transverse_Mercator"],)w"
+                     R"w(PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",{}],)w"
+                     R"w(PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],)w"
+                     R"w(PARAMETER["false_northing",{}],UNIT["metre",1,AUTHORITY["EPSG","9001"]],)w"
+                     R"w(AXIS["Easting",EAST],AXIS["Northing",NORTH],AUTHORITY["EPSG","{}"]])w",
+                     utm_->crs_name(), kWgs84GeographicWkt1, utm_->central_meridian(),
+                     utm_->false_northing(), utm_->epsg());
 }
 
 std::string Georeference::wkt2() const {

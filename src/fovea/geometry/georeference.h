@@ -43,6 +43,8 @@ class Georeference {
   /// WKT 1 (OGC 01-009), as LAS files carry it. UTM with heights is COMPD_CS with a vertical datum
   /// of type 2002, ellipsoidal, the form that PROJ reads and writes for three-dimensional CRS.
   std::string wkt1() const;
+  /// As wkt1(), without heights: for pictures and maps in plan.
+  std::string wkt1_in_plan() const;
   /// WKT 2 (ISO 19162:2019), in which also the local frame of a georeferenced map has its place on
   /// earth (topocentric coordinates).
   std::string wkt2() const;
