@@ -23,9 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 void check_city_options(const ExportArguments& arguments, const std::string& format) {
-  if (format != "3dtiles" && format != "las" && format != "ply" && format != "pcd") {
+  constexpr std::array kFormats{"3dtiles", "las", "ply", "pcd", "orthophoto"};
+  if (std::find(kFormats.begin(), kFormats.end(), format) == kFormats.end()) {
     throw ConfigError("a city has no export in the format " + format, "--format",
-                      "choose 3dtiles, las, ply or pcd, or export a tile");
+                      "choose 3dtiles, las, ply, pcd or orthophoto, or export a tile");
   }
   if (arguments.crs == "local") {
     throw ConfigError("each tile has a local frame of its own", "--crs", "choose utm or ecef");
@@ -59,10 +60,11 @@ void require_one_zone(const City& city, const ExportArguments& arguments) {
   }
 }
 
-bool is_ending_of_part(const std::string& ending) {
-  constexpr std::array kEndings{"", ".partial", ".las", ".ply", ".pcd"};
-  const bool is_partial = ending.ends_with(".partial") && ending.size() == 12;  // ".las.partial"
-  return is_partial || std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+bool is_ending_of_part(std::string ending) {
+  constexpr std::array kEndings{"", ".las", ".ply", ".pcd", ".png", ".pgw", ".png.aux.xml"};
+  constexpr std::string_view kPartial = ".partial";
+  if (ending.ends_with(kPartial)) ending.resize(ending.size() - kPartial.size());
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
 /// Names that the folder of an earlier export, or what a killed program left of one, may have.
@@ -145,7 +147,8 @@ void export_city(ExportArguments& arguments, const std::string& format, Warnings
   }
   choose_points(city, arguments, format);
   require_one_zone(city, arguments);
-  const std::string ending = is_tileset ? "" : "." + format;
+  arguments.may_be_empty = format == "orthophoto";
+  const std::string ending = is_tileset ? "" : format == "orthophoto" ? ".png" : "." + format;
   OutputFolder folder(arguments.output, arguments.force,
                       contents_of(city, arguments.output, ending, beside));
   PointExport written = write_tiles(city, folder.partial(), ending, arguments, format);

@@ -22,13 +22,15 @@ namespace fovea::app {
 namespace {
 
 constexpr const char* kFormats =
-    "ply, pcd, las, 3dtiles, mesh, glb, tum, csv, geojson, frames or kitti-poses";
+    "ply, pcd, las, 3dtiles, mesh, glb, orthophoto, "
+    "tum, csv, geojson, frames or kitti-poses";
 
 /// The format asked for, or else the one of the output's ending; CLI::ValidationError without
 /// either.
 std::string format_of(const ExportArguments& arguments) {
   if (!arguments.format.empty()) return arguments.format;
   const std::string ending = std::filesystem::path(arguments.output).extension().string();
+  if (ending == ".png") return "orthophoto";
   for (const char* format : {"ply", "pcd", "las", "glb", "tum", "csv", "geojson"}) {
     if (ending == std::string(".") + format) return format;
   }
@@ -47,16 +49,20 @@ void check_options(const CLI::App& command, const ExportArguments& arguments,
   if (format == "mesh" && std::filesystem::path(arguments.output).extension() == ".glb") {
     throw CLI::ValidationError("--format", "mesh is a folder; leave it out for one .glb file");
   }
-  only_for("--crs", {"ply", "pcd", "las"});  // a tileset's root places it on earth by itself
+  const std::vector<std::string> with_points = {"ply",  "pcd", "las",       "3dtiles",
+                                                "mesh", "glb", "orthophoto"};
+  // A tileset's root places it on earth by itself.
+  only_for("--crs", {"ply", "pcd", "las", "orthophoto"});
+  only_for("--pixel", {"orthophoto"});
   only_for("--double", {"ply", "pcd"});
   only_for("--utc-offset", {"las"});
   only_for("--voxel", {"mesh", "glb"});
   only_for("--viewer", {"3dtiles", "mesh"});
   only_for("--root-only", {"3dtiles"});
-  only_for("--uncolored", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
-  only_for("--where", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
+  only_for("--uncolored", with_points);
+  only_for("--where", with_points);
   only_for("--color-depth", {"ply", "pcd", "las"});
-  only_for("--exposure", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
+  only_for("--exposure", with_points);
   if (!arguments.root_only) return;
   for (const char* option : {"--uncolored", "--where", "--exposure"}) {
     if (command.count(option) == 0) continue;
@@ -71,6 +77,13 @@ CommandFiles files_of(const ExportArguments& arguments, const std::string& forma
   if (is_of_city) {
     files.folder = {arguments.output,
                     arguments.root_only ? FolderUse::kAddTo : FolderUse::kReplace};
+    return files;
+  }
+  if (format == "orthophoto") {
+    const auto [picture, world_file, auxiliary] = orthophoto_files(arguments.output);
+    files.outputs = {{picture.string(), ContentKind::kPng, arguments.force},
+                     {world_file.string(), ContentKind::kWorldFile, arguments.force},
+                     {auxiliary.string(), ContentKind::kRasterAuxiliary, arguments.force}};
     return files;
   }
   const std::map<std::string, ContentKind> kinds{
@@ -118,18 +131,20 @@ void add_export_command(CLI::App& app, Session& session) {
                    "File to write, or folder of 3dtiles and mesh and of all formats of a city")
       ->required();
   command
-      ->add_option(
-          "--format", arguments->format,
-          "ply, pcd, las or 3dtiles (points; the last a folder), mesh (triangles as "
-          "3dtiles, a folder), glb (triangles, a file), tum, csv or geojson (where the LiDAR was), "
-          "frames (CSV: stamps, poses and gains), or kitti-poses (T_local_lidar a line); "
-          "default: by OUT's ending")
-      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "tum", "csv", "geojson",
-                             "frames", "kitti-poses"}));
+      ->add_option("--format", arguments->format,
+                   "ply, pcd, las or 3dtiles (points; the last a folder), mesh (triangles as "
+                   "3dtiles, a folder), glb (triangles, a file), orthophoto (a PNG "
+                   "with a world file), tum, csv or geojson (where the LiDAR was), "
+                   "frames (CSV: stamps, poses and gains), or kitti-poses (T_local_lidar a line); "
+                   "default: by OUT's ending")
+      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "orthophoto", "tum",
+                             "csv", "geojson", "frames", "kitti-poses"}));
   command
-      ->add_option("--crs", arguments->crs,
-                   "Coordinates: local (the map's), utm (the origin's zone on WGS 84, ellipsoidal "
-                   "heights) or ecef (EPSG 4978); default: local, of a city utm")
+      ->add_option(
+          "--crs", arguments->crs,
+          "Coordinates: local (the map's), utm (the origin's zone on WGS 84, ellipsoidal "
+          "heights) or ecef (EPSG 4978); default: local, of a city and of an orthophoto on "
+          "earth utm")
       ->check(CLI::IsMember({"local", "utm", "ecef"}));
   command->add_flag("--double", arguments->double_positions,
                     "PLY, PCD: positions as double, as they are in utm and ecef anyway");
@@ -144,6 +159,9 @@ void add_export_command(CLI::App& app, Session& session) {
                    "mesh, glb: about the edge of the finest triangles (m), at least twice the "
                    "points' spacing; default: 0.05")
       ->check(finite_range(0.01, 10.0));
+  command->add_option("--pixel", arguments->pixel, "orthophoto: edge of a pixel (m)")
+      ->capture_default_str()
+      ->check(finite_range(0.001, 100.0));
   command->add_flag("--viewer", arguments->viewer,
                     "3dtiles, mesh: with the page of 'fovea view', for any web server to show");
   command->add_flag("--root-only", arguments->root_only,

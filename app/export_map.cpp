@@ -77,6 +77,9 @@ void write(const MapReader& map, ExportArguments& arguments, const std::string& 
     arguments.points.include_uncolored = true;
     if (!arguments.quiet) print_out("the map has no colors: its points are gray\n");
   }
+  if (format == "orthophoto" && arguments.crs.empty()) {
+    arguments.crs = to_string(orthophoto_crs(map));
+  }
   parse_point_choice(arguments);
   if (format == "mesh" || format == "glb") {
     return write_mesh(map, arguments, format == "mesh", warnings);
@@ -115,6 +118,11 @@ PointExport write_points(const MapReader& map, const std::string& output,
     const TilesetFigures figures = write_tileset(map, output, options);
     written.figures = figures;
     written.tiles = figures.tiles;
+  } else if (format == "orthophoto") {
+    const OrthophotoFigures figures = write_orthophoto(
+        map, output, {arguments.points, arguments.pixel, arguments.may_be_empty, arguments.force});
+    written.figures = figures;
+    written.width = figures.width, written.height = figures.height;
   } else {
     const auto write_file = format == "pcd" ? write_pcd : write_ply;
     written.figures =
@@ -128,6 +136,7 @@ void report_points(const PointExport& written, const ExportArguments& arguments,
   if (!arguments.quiet) {
     print_figures(arguments, written.figures);
     if (format == "3dtiles") print_out("{} tiles\n", written.tiles);
+    if (written.width > 0) print_out("{} x {} pixels\n", written.width, written.height);
     if (!written.dated) {
       print_out("the drive's stamps have no date: LAS has them in seconds, as GPS week time\n");
     }

@@ -7,6 +7,7 @@
 
 #include "app/warnings.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
+#include "fovea/exporting/orthophoto/orthophoto_writer.h"
 #include "fovea/map/point_files/point_stream.h"
 
 namespace fovea::app {
@@ -16,8 +17,10 @@ struct ExportArguments {
   PointChoice points;
   std::optional<double> utc_offset;  // h
   double voxel = MeshOptions().voxel;
+  double pixel = OrthophotoOptions().pixel;
   int color_depth = 8;  // bits
   bool double_positions = false, viewer = false, root_only = false;
+  bool may_be_empty = false;  // no orthophoto of a map without chosen points
   bool if_missing = false, force = false, quiet = false;
 };
 
@@ -27,6 +30,7 @@ using FilesBeside = std::map<std::string, std::string>;
 struct PointExport {
   ExportFigures figures;
   std::size_t tiles = 0;                // of a tileset
+  int width = 0, height = 0;            // pixels of an orthophoto
   std::size_t points_without_time = 0;  // in LAS
   bool dated = true;                    // LAS has the times of a calendar
 };
@@ -35,7 +39,7 @@ struct PointExport {
 void parse_point_choice(ExportArguments& arguments);
 
 /// Writes the points of a map.
-/// @param format  ply, pcd, las or 3dtiles
+/// @param format  ply, pcd, las, 3dtiles or orthophoto
 PointExport write_points(const MapReader& map, const std::string& output,
                          const ExportArguments& arguments, const std::string& format,
                          const FilesBeside& beside = {});

@@ -152,6 +152,28 @@ TEST_F(CityFiles, ExportReplacesOnlyAnExportAndOnlyWithForce) {
   EXPECT_EQ(read_text(folder_ / "out/notes.txt"), "mine");
 }
 
+TEST_F(CityFiles, OrthophotosOfTilesFitTogether) {
+  const std::string options = "'" + path("out") + "' --format orthophoto --pixel 0.5";
+  ASSERT_EQ(run("export", options).exit_code, 0);
+  EXPECT_THAT(names_in("out"),
+              UnorderedElementsAre("0_0.png", "0_0.pgw", "0_0.png.aux.xml", "1_0.png", "1_0.pgw",
+                                   "1_0.png.aux.xml", "0_-1.png", "0_-1.pgw", "0_-1.png.aux.xml"));
+  for (const char* tile : {"0_0", "1_0", "0_-1"}) {
+    std::istringstream lines(read_text(folder_ / "out" / (std::string(tile) + ".pgw")));
+    double number = 0;
+    for (int i = 0; i < 4; ++i) lines >> number;
+    for (int axis = 0; axis < 2; ++axis) {
+      lines >> number;  // a center
+      EXPECT_NEAR(std::remainder(number - 0.25, 0.5), 0, 1e-6) << tile;
+    }
+  }
+  EXPECT_THAT(run("export", options).err, HasSubstr("--force"));
+  EXPECT_EQ(run("export", options + " --force").exit_code, 0);
+  // Tiles without chosen points have no picture.
+  EXPECT_EQ(run("export", options + " --force --where 'frame > 1e6'").exit_code, 0);
+  EXPECT_THAT(names_in("out"), testing::IsEmpty());
+}
+
 TEST_F(CityFiles, OptionsOfExportAreForAllTiles) {
   const auto export_error = [&](const std::string& options) {
     const ProgramRun result = run("export", "'" + path("out") + "' " + options);

@@ -152,7 +152,7 @@ TEST_F(Outputs, AClosedStandardOutputDoesNotEndUpInAFile) {
 TEST_F(Outputs, ALimitOnFileSizesIsAnErrorAndLeavesNothing) {
   for (const char* arguments :
        {"export MAP FOLDER/out.ply", "export MAP FOLDER/out.pcd", "export MAP FOLDER/out.las",
-        "export MAP FOLDER/out --format 3dtiles",
+        "export MAP FOLDER/out.png", "export MAP FOLDER/out --format 3dtiles",
         "crop MAP -o FOLDER/out --box=-99,-99,-99,99,99,99", "repair MAP -o FOLDER/out"}) {
     const std::vector<std::string> names = folder_.names();
     const ProgramRun limited = run(arguments, "ulimit -f 8;");

@@ -12,17 +12,19 @@
 namespace fovea {
 
 struct ExportOptions {
-  /// "ply", "pcd", "las", "3dtiles" (a folder), "mesh" (a folder), "glb", or, of the
-  /// frames, "tum", "csv", "geojson", "frames" (CSV with gains) or "kitti-poses"; empty: by the
-  /// ending of the output.
+  /// "ply", "pcd", "las", "3dtiles" (a folder), "mesh" (a folder), "glb", "orthophoto" (PNG), or,
+  /// of the frames, "tum", "csv", "geojson", "frames" (CSV with gains) or "kitti-poses"; empty: by
+  /// the ending of the output.
   std::string format = {};
-  std::string crs = {};            ///< "local", "utm" or "ecef"; empty: local
-  std::string where = {};          ///< "views >= 2 and range < 10"; empty: all points
+  /// "local", "utm" or "ecef"; empty: local, and utm of an orthophoto of a map on earth
+  std::string crs = {};
+  std::string where = {};          ///< "height < 2 and views >= 2"; empty: all points
   std::string exposure = "auto";   ///< "auto", "map", "frame:N" or stops above that of the map
   bool include_uncolored = false;  ///< also points that no camera saw, in gray
   bool double_positions = false;   ///< PLY and PCD
   int color_depth = 8;             ///< bits of a channel, 8 or 16; PLY, PCD and LAS
   double voxel = 0.05;             ///< mesh and glb: about the edge of the finest triangles, m
+  double pixel = 0.05;             ///< orthophoto: edge of a pixel, m
   std::optional<double> utc_offset = {};  ///< LAS: h that the drive's clock is ahead of UTC
   bool force = false;                     ///< replaces the output
 };
@@ -32,6 +34,7 @@ struct ExportedMap {
   std::size_t uncolored_left_out = 0, filtered_out = 0;
   std::size_t tiles = 0;      ///< of a tileset
   std::size_t triangles = 0;  ///< of a mesh
+  int width = 0, height = 0;  ///< of an orthophoto, pixels
 };
 
 /// Writes a map in another form (docs/exports.md).

@@ -11,6 +11,7 @@
 #include "fovea/exporting/frame_formats.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
+#include "fovea/exporting/orthophoto/orthophoto_writer.h"
 #include "fovea/exporting/tileset/tileset_writer.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/point_files/las_writer.h"
@@ -21,18 +22,20 @@
 namespace fovea {
 namespace {
 
-constexpr std::array<std::string_view, 6> kPointFormats = {"ply",     "pcd",  "las",
-                                                           "3dtiles", "mesh", "glb"};
+constexpr const char* kOrthophoto = "orthophoto";
+constexpr std::array<std::string_view, 7> kPointFormats = {"ply",  "pcd", "las",      "3dtiles",
+                                                           "mesh", "glb", kOrthophoto};
 
 std::string format_of(const std::filesystem::path& output, const ExportOptions& options) {
   std::string format = options.format;
   if (format.empty() && output.has_extension()) format = output.extension().string().substr(1);
+  if (options.format.empty() && format == "png") format = kOrthophoto;
   const bool has_points =
       std::find(kPointFormats.begin(), kPointFormats.end(), format) != kPointFormats.end();
   if (has_points || is_frame_format(format)) return format;
   throw ConfigError(fmt::format("there is no export format '{}'", format), output.string(),
-                    "give ExportOptions::format: ply, pcd, las, 3dtiles, mesh, glb, tum, csv, "
-                    "geojson, frames or kitti-poses");
+                    "give ExportOptions::format: ply, pcd, las, 3dtiles, mesh, glb, orthophoto, "
+                    "tum, csv, geojson, frames or kitti-poses");
 }
 
 PointChoice point_choice(const MapReader& map, const ExportOptions& options) {
@@ -54,7 +57,9 @@ PointChoice point_choice(const MapReader& map, const ExportOptions& options) {
 }
 
 ExportedMap exported(const ExportFigures& figures) {
-  return {figures.points, figures.uncolored_left_out, figures.filtered_out, 0, 0};
+  return {.points = figures.points,
+          .uncolored_left_out = figures.uncolored_left_out,
+          .filtered_out = figures.filtered_out};
 }
 
 ExportedMap write_mesh(const MapReader& map, const std::filesystem::path& output,
@@ -72,8 +77,21 @@ ExportedMap write_mesh(const MapReader& map, const std::filesystem::path& output
   return result;
 }
 
+ExportedMap write_picture(const MapReader& map, const std::filesystem::path& output,
+                          const ExportOptions& options) {
+  OrthophotoOptions picture{
+      .points = point_choice(map, options), .pixel = options.pixel, .force = options.force};
+  if (options.crs.empty()) picture.points.crs = orthophoto_crs(map);
+  const OrthophotoFigures figures = write_orthophoto(map, output, picture);
+  ExportedMap result = exported(figures);
+  result.width = figures.width;
+  result.height = figures.height;
+  return result;
+}
+
 ExportedMap write_points(const MapReader& map, const std::filesystem::path& output,
                          const std::string& format, const ExportOptions& options) {
+  if (format == kOrthophoto) return write_picture(map, output, options);
   const PointChoice points = point_choice(map, options);
   if (format == "mesh" || format == "glb") {
     return write_mesh(map, output, {points, options.voxel, options.force}, format == "mesh");

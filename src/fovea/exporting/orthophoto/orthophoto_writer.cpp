@@ -145,6 +145,7 @@ OrthophotoFigures write_orthophoto(const MapReader& map, const fs::path& path,
   figures.filled_pixels = write_picture(chosen, grid, picture.stream());
   world.stream() << grid.world_file();
   auxiliary.stream() << auxiliary_file(chosen.points().georeference());
+  picture.stream().flush();  // a full disk shows here, before any file appears
   auxiliary.commit();
   world.commit();
   picture.commit();
