@@ -26,7 +26,7 @@ Heights stated_heights(const MapReader& map) {
 }
 
 /// Number of the drive of a frame; the number of drives if it belongs to none.
-std::size_t drive_of(const std::vector<DriveRecord>& drives, int frame) {
+std::size_t drive_of_frame(const std::vector<DriveRecord>& drives, int frame) {
   const auto has_frame = [frame](const DriveRecord& drive) {
     return drive.first_frame <= frame && frame < drive.end_frame;
   };
@@ -69,7 +69,7 @@ RoadHeight::RoadHeight(const MapReader& map) {
   std::size_t last_drive = by_drive.size();
   for (const FrameRecord& frame : map.frames()) {
     if (frame.status == FrameStatus::kSkipped) continue;
-    const std::size_t drive = drive_of(drives, frame.index);
+    const std::size_t drive = drive_of_frame(drives, frame.index);
     lead_to(frame.T_local_lidar.translation(), drive == last_drive);
     heights.resize(places_.size(), by_drive[drive]);
     last_drive = drive;

@@ -10,7 +10,7 @@ namespace {
 
 /// Of a cell, each coordinate in 21 bits: nodes are 128 cells wide, and what reaches beyond them
 /// less than a tile.
-std::uint64_t cell_key(const Eigen::Array3d& cell) {
+std::uint64_t node_cell_key(const Eigen::Array3d& cell) {
   constexpr double kMiddle = 1 << 20;
   std::uint64_t key = 0;
   for (const double axis : cell) key = key << 21 | static_cast<std::uint64_t>(axis + kMiddle);
@@ -46,7 +46,7 @@ std::vector<std::uint32_t> thinned_numbers(std::span<const ExportPoint> points,
     const Eigen::Array3d cell = place.floor();
     const Nearest here{static_cast<std::uint32_t>(i), (place - cell - 0.5).square().sum()};
     const auto [number, is_new] =
-        number_of_cell.try_emplace(cell_key(cell), static_cast<std::uint32_t>(nearest.size()));
+        number_of_cell.try_emplace(node_cell_key(cell), static_cast<std::uint32_t>(nearest.size()));
     if (is_new) {
       nearest.push_back(here);
     } else if (here.distance2 < nearest[*number].distance2) {
