@@ -8,6 +8,11 @@
 namespace fovea {
 namespace {
 
+bool is_in_digest(const std::string& key) {
+  return key != meta_key::kFormatVersion && !key.starts_with(meta_key::kTimingPrefix) &&
+         !key.starts_with(meta_key::kCameraModelPrefix);
+}
+
 /// The values of a row that belong to the digest.
 void add_row(const Table& table, const Row& row, ValueHash& digest) {
   digest.row();
@@ -19,8 +24,7 @@ void add_row(const Table& table, const Row& row, ValueHash& digest) {
 void add_meta(const MapReader& map, ValueHash& digest) {
   digest.section(kMetaTable.name);
   for (const auto& [key, value] : map.meta()) {
-    if (key == meta_key::kFormatVersion || key.starts_with(meta_key::kTimingPrefix)) continue;
-    add_row(kMetaTable, meta_row(key, value), digest);
+    if (is_in_digest(key)) add_row(kMetaTable, meta_row(key, value), digest);
   }
 }
 

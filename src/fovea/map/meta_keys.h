@@ -34,6 +34,10 @@ inline constexpr const char* kDelayEnding = ".delay_s";
 inline constexpr const char* kImuRotation = "calibration.imu.rotation_rad";
 inline constexpr const char* kImuDelay = "calibration.imu.delay_s";
 
+// The cameras; the prefix is followed by the numbers of a drive and of its camera, "0.2". Excluded
+// from the digest, so that maps from before these keys are equal to new ones.
+inline constexpr const char* kCameraModelPrefix = "camera_model.";
+
 // Geometry.
 inline constexpr const char* kTileSize = "map.tile_size_m";
 inline constexpr const char* kGeoreferenced = "georeferenced";
@@ -49,7 +53,7 @@ inline constexpr const char* kRepair = "repair";
 inline constexpr const char* kTimingPrefix = "timing.";
 
 /// All keys and prefixes, for the test of docs/map-format.md.
-inline constexpr std::array<std::string_view, 29> kAll = {
+inline constexpr std::array<std::string_view, 30> kAll = {
     kFormatVersion,
     kFoveaVersion,
     kDriveName,
@@ -70,6 +74,7 @@ inline constexpr std::array<std::string_view, 29> kAll = {
     kDelayEnding,
     kImuRotation,
     kImuDelay,
+    kCameraModelPrefix,
     kTileSize,
     kGeoreferenced,
     kOriginLatitude,

@@ -118,6 +118,11 @@ std::vector<std::string> known_keys(const Table& table) {
       keys.push_back(fmt::format("{}{}{}", meta_key::kCalibrationPrefix, camera, ending));
     }
   }
+  constexpr int kMostDrives = 100, kCamerasOfDrive = 10;
+  for (int number = 0; number < kMostDrives * kCamerasOfDrive; ++number) {
+    keys.push_back(fmt::format("{}{}.{}", meta_key::kCameraModelPrefix, number / kCamerasOfDrive,
+                               number % kCamerasOfDrive));
+  }
   return keys;
 }
 

@@ -8,6 +8,7 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/errors.h"
+#include "fovea/map/camera_models.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/tile_cache.h"
@@ -40,6 +41,9 @@ MapMeta merged_meta(const MapContent& a, const MapContent& b,
   MapMeta meta = a.meta;
   meta[meta_key::kFramesEnd] = fmt::to_string(added.back().merged.end_frame);
   meta[meta_key::kCameras] = cameras_of({&a, &b});
+  for (const AddedDrive& drive : added) {
+    copy_camera_models(b.meta, drive.number_in_b, drive.number, meta);
+  }
   if (b.text(meta_key::kComplete) != "1") meta[meta_key::kComplete] = fmt::to_string(0);
   for (const char* key : {meta_key::kCrop, meta_key::kRepair}) {
     const std::string text = b.text(key);

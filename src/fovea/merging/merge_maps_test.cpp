@@ -9,6 +9,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/core/parallel.h"
 #include "fovea/errors.h"
+#include "fovea/map/camera_models.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/pipeline/map_drive.h"
 
@@ -104,6 +105,7 @@ TEST_F(Merge, TheSecondDriveLiesWhereItWas) {
   EXPECT_EQ(drives[1].first_frame, 6);
   EXPECT_EQ(drives[1].end_frame, 12);
   EXPECT_EQ(drives[1].frame_shift, 6);
+  for (const std::size_t drive : {0, 1}) EXPECT_EQ(camera_models(merged.meta(), drive).size(), 1u);
   const std::vector<FrameRecord> frames = merged.frames();
   ASSERT_EQ(frames.size(), 12u);
   for (int i = 0; i < 6; ++i) {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "fovea/errors.h"
+#include "fovea/map/camera_models.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/merging/cell_reader.h"
 #include "fovea/merging/free_space.h"
@@ -153,6 +154,7 @@ MapMeta TileFusion::meta() const {
   meta[meta_key::kFramesEnd] = fmt::to_string(next_frame_);
   std::vector<const MapContent*> maps;
   for (const CellSource& source : sources_) {
+    copy_camera_models(source.content.meta, 0, maps.size(), meta);
     maps.push_back(&source.content);
     if (source.content.text(meta_key::kComplete) != "1") meta[meta_key::kComplete] = "0";
     for (const char* key : {meta_key::kCrop, meta_key::kRepair}) {

@@ -8,6 +8,7 @@
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/errors.h"
+#include "fovea/map/camera_models.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/merging/keyframe_test_support.h"
 
@@ -26,6 +27,7 @@ struct Wall {
   std::uint8_t views = 2;
   double log2_gain = 0;  ///< of its submap in the city
   double free = 0;       ///< m, range of the keyframes 5 m west of the wall; 0: none
+  int camera = 0;        ///< of its drive
 };
 
 class TileFusionOf : public testing::Test {
@@ -39,6 +41,12 @@ class TileFusionOf : public testing::Test {
     writer->put_meta(meta_key::kTileSize, "4");
     writer->put_meta(meta_key::kDriveName, name);
     writer->put_meta(meta_key::kComplete, "1");
+    Camera camera;
+    camera.index = wall.camera;
+    camera.fx = camera.fy = 700;
+    MapMeta cameras;
+    store_camera_models({camera}, 0, cameras);
+    for (const auto& [key, value] : cameras) writer->put_meta(key, value);
     DriveRecord drive;
     drive.name = name;
     drive.kind = "generic";
@@ -105,6 +113,19 @@ class TileFusionOf : public testing::Test {
   CityPoses city_;
   const std::size_t wall_points_ = 50 * 25;
 };
+
+TEST_F(TileFusionOf, EachDriveKeepsItsCameras) {
+  add("first", {.camera = 2});
+  add("second", {.camera = 3});
+  fuse();
+  const MapReader tile(folder_ / "tile.fovea");
+  ASSERT_EQ(tile.drives().size(), 2u);
+  for (std::size_t drive = 0; drive < 2; ++drive) {
+    const std::vector<Camera> cameras = camera_models(tile.meta(), drive);
+    ASSERT_EQ(cameras.size(), 1u);
+    EXPECT_EQ(cameras[0].index, tile.drives()[drive].name == "first" ? 2 : 3);
+  }
+}
 
 TEST_F(TileFusionOf, AWallThatThreeDrivesShowIsThereOnce) {
   for (int k = 0; k < 3; ++k) add(fmt::format("drive_{}", k), {.east = 10 + 0.01 * k});

@@ -32,6 +32,25 @@ TEST_F(MapDriveResume, AnInterruptedRunGoesOnToTheSameMap) {
   EXPECT_EQ(digest(), whole);
 }
 
+// The fingerprints of the drive compare the cameras; maps of older versions do not state them.
+TEST_F(MapDriveResume, TheStatedCamerasAreNotCompared) {
+  std::stop_source stop;
+  MapJob job = this->job();
+  job.stop = stop.get_token();
+  map_drive(drive_, job, [&](const RunProgress& progress) {
+    if (progress.done == 3) stop.request_stop();
+  });
+  const auto writer = MapWriter::open(job.output);
+  const std::string key = "camera_model.0.2";
+  ASSERT_TRUE(MapReader(job.output).meta().contains(key));
+  writer->put_meta(key, "");
+  writer->finish();
+  job.stop = {};
+  job.resume = true;
+  EXPECT_FALSE(map_drive(drive_, job, {}).interrupted);
+  EXPECT_NE(MapReader(job.output).meta().at(key), "");
+}
+
 // Without navigation too, and with a vehicle that is under way.
 TEST_F(MapDriveResume, WithoutCamerasTheMapIsTheSameAtAnyThreadsAndWhenResumed) {
   drive_.editable_info().calibration = {};

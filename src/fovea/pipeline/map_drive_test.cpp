@@ -6,6 +6,7 @@
 
 #include "../../../tests/raw_drive.h"
 #include "fovea/core/parallel.h"
+#include "fovea/map/camera_models.h"
 #include "fovea/map/drive_fingerprint.h"
 #include "fovea/pipeline/map_drive_test_support.h"
 
@@ -100,6 +101,16 @@ TEST_F(MapDrive, TheMapStatesItsDriveSensorAndViews) {
       EXPECT_LT(frame.views[0].log2_gain->cwiseAbs().maxCoeff(), 0.02);
     }
   }
+}
+
+TEST_F(MapDrive, TheMapStatesItsCameras) {
+  map_drive(drive_, job(), {});
+  const std::vector<Camera> stated = camera_models(MapReader(job().output).meta(), 0);
+  const Camera& expected = drive_.info().calibration.cameras.at(0);
+  ASSERT_EQ(stated.size(), 1u);
+  EXPECT_EQ(stated[0].index, expected.index);
+  EXPECT_EQ(stated[0].fx, expected.fx);
+  EXPECT_EQ(stated[0].T_cam_lidar.matrix(), expected.T_cam_lidar.matrix());
 }
 
 /// Leaves a place and comes back to it twice; 100 m lie between the two.

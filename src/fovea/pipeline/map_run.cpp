@@ -8,6 +8,7 @@
 #include "fovea/core/parallel.h"
 #include "fovea/drive/recalibrated_source.h"
 #include "fovea/errors.h"
+#include "fovea/map/camera_models.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/earlier_run.h"
@@ -53,6 +54,7 @@ MapRun::MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& 
       check_.emplace(drive, has_sweep_motion(drive, job), /*is_live=*/false);
     }
   }
+  store_camera_models(drive.calibration.cameras, /*drive=*/0, meta_);
   for (const Camera& camera : drive.calibration.cameras) {
     live_state_.image_delays[camera.index] = camera.image_delay;
   }
