@@ -88,15 +88,21 @@ def positions(points: fovea.Points) -> npt.NDArray[np.float64]:
     return points.origin + points.position.astype(np.float64)
 
 
-def assert_same_points(ours: list[npt.NDArray[Any]], theirs: list[npt.NDArray[Any]],
-                       tolerance: float = MILLIMETER) -> None:
-    """The points are the same, in any order. Each list has positions and further columns.
+def assert_contained(few: list[npt.NDArray[Any]], many: list[npt.NDArray[Any]],
+                     tolerance: float = MILLIMETER) -> None:
+    """Each of the few points is one of the many. Each list has positions and further columns.
 
     A point with its further columns is one vector: a wrong column is as far away as a wrong position.
     """
-    ours_joined, theirs_joined = (np.column_stack(columns).astype(np.float64) for columns in (ours, theirs))
-    assert ours_joined.shape == theirs_joined.shape, f"{ours_joined.shape} and {theirs_joined.shape}"
-    for here, there in ((ours_joined, theirs_joined), (theirs_joined, ours_joined)):
-        distances, _ = cKDTree(there).query(here, distance_upper_bound=2 * tolerance)
-        lonely = int(np.sum(~(distances <= tolerance)))
-        assert lonely == 0, f"{lonely} of {len(here)} points have no equal one"
+    few_joined, many_joined = (np.column_stack(columns).astype(np.float64) for columns in (few, many))
+    distances, _ = cKDTree(many_joined).query(few_joined, distance_upper_bound=2 * tolerance)
+    lonely = int(np.sum(~(distances <= tolerance)))
+    assert lonely == 0, f"{lonely} of {len(few_joined)} points have no equal one"
+
+
+def assert_same_points(ours: list[npt.NDArray[Any]], theirs: list[npt.NDArray[Any]],
+                       tolerance: float = MILLIMETER) -> None:
+    """The points are the same, in any order, see assert_contained()."""
+    assert len(ours[0]) == len(theirs[0]), f"{len(ours[0])} and {len(theirs[0])} points"
+    assert_contained(ours, theirs, tolerance)
+    assert_contained(theirs, ours, tolerance)
