@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* kFormats =
     "ply, pcd, las, 3dtiles, mesh, glb, orthophoto, "
-    "tum, csv, geojson, frames or kitti-poses";
+    "colmap, nerf, tum, csv, geojson, frames or kitti-poses";
 
 /// The format asked for, or else the one of the output's ending; CLI::ValidationError without
 /// either.
@@ -49,14 +49,16 @@ void check_options(const CLI::App& command, const ExportArguments& arguments,
   if (format == "mesh" && std::filesystem::path(arguments.output).extension() == ".glb") {
     throw CLI::ValidationError("--format", "mesh is a folder; leave it out for one .glb file");
   }
-  const std::vector<std::string> with_points = {"ply",  "pcd", "las",       "3dtiles",
-                                                "mesh", "glb", "orthophoto"};
+  const std::vector<std::string> with_points = {"ply", "pcd",    "las",  "3dtiles",   "mesh",
+                                                "glb", "colmap", "nerf", "orthophoto"};
   // A tileset's root places it on earth by itself.
   only_for("--crs", {"ply", "pcd", "las", "orthophoto"});
   only_for("--pixel", {"orthophoto"});
   only_for("--double", {"ply", "pcd"});
   only_for("--utc-offset", {"las"});
-  only_for("--voxel", {"mesh", "glb"});
+  only_for("--voxel", {"mesh", "glb", "colmap", "nerf"});
+  only_for("--drive", {"colmap", "nerf"});
+  only_for("--max-points", {"colmap", "nerf"});
   only_for("--viewer", {"3dtiles", "mesh"});
   only_for("--root-only", {"3dtiles"});
   only_for("--uncolored", with_points);
@@ -74,6 +76,7 @@ CommandFiles files_of(const ExportArguments& arguments, const std::string& forma
                       bool is_of_city) {
   CommandFiles files;
   files.inputs = {arguments.map};
+  if (!arguments.drive.empty()) files.inputs.push_back(arguments.drive);
   if (is_of_city) {
     files.folder = {arguments.output,
                     arguments.root_only ? FolderUse::kAddTo : FolderUse::kReplace};
@@ -134,11 +137,12 @@ void add_export_command(CLI::App& app, Session& session) {
       ->add_option("--format", arguments->format,
                    "ply, pcd, las or 3dtiles (points; the last a folder), mesh (triangles as "
                    "3dtiles, a folder), glb (triangles, a file), orthophoto (a PNG "
-                   "with a world file), tum, csv or geojson (where the LiDAR was), "
+                   "with a world file), colmap or nerf (posed images and points, a "
+                   "folder), tum, csv or geojson (where the LiDAR was), "
                    "frames (CSV: stamps, poses and gains), or kitti-poses (T_local_lidar a line); "
                    "default: by OUT's ending")
-      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "orthophoto", "tum",
-                             "csv", "geojson", "frames", "kitti-poses"}));
+      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "orthophoto", "colmap",
+                             "nerf", "tum", "csv", "geojson", "frames", "kitti-poses"}));
   command
       ->add_option(
           "--crs", arguments->crs,
@@ -157,8 +161,18 @@ void add_export_command(CLI::App& app, Session& session) {
   command
       ->add_option("--voxel", arguments->voxel,
                    "mesh, glb: about the edge of the finest triangles (m), at least twice the "
-                   "points' spacing; default: 0.05")
+                   "points' spacing; colmap, nerf: one point in each cell of this edge; default: "
+                   "0.05")
       ->check(finite_range(0.01, 10.0));
+  command
+      ->add_option("--drive", arguments->drive,
+                   "colmap, nerf: the drive that the map was made of, whose images are written")
+      ->type_name("DRIVE");
+  command
+      ->add_option("--max-points", arguments->max_points,
+                   "colmap, nerf: cells grow until there are at most this many points")
+      ->capture_default_str()
+      ->check(whole_number(kLeastTrainingPoints, kMostTrainingPoints));
   command->add_option("--pixel", arguments->pixel, "orthophoto: edge of a pixel (m)")
       ->capture_default_str()
       ->check(finite_range(0.001, 100.0));

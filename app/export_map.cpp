@@ -10,6 +10,8 @@
 #include "fovea/exporting/frame_formats.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
 #include "fovea/exporting/tileset/tileset_writer.h"
+#include "fovea/exporting/views/colmap_writer.h"
+#include "fovea/exporting/views/nerf_writer.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/point_files/las_writer.h"
 #include "fovea/map/point_files/pcd_writer.h"
@@ -68,6 +70,34 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
   print_out("{} tiles\n", figures.tiles);
 }
 
+/// Posed images and points for view synthesis.
+void write_views(const MapReader& map, const ExportArguments& arguments, const std::string& format,
+                 Warnings& warnings) {
+  const auto write = format == "nerf" ? write_nerf : write_colmap;
+  const ViewExportFigures figures = write(map, arguments.map, arguments.output,
+                                          {.points = arguments.points,
+                                           .drive = arguments.drive,
+                                           .max_points = arguments.max_points,
+                                           .cell = arguments.voxel,
+                                           .force = arguments.force});
+  if (figures.images_missing > 0) {
+    warnings.add({fmt::format("{} images of the map's frames cannot be read from the drive and are "
+                              "left out",
+                              figures.images_missing)},
+                 arguments.quiet);
+  }
+  if (arguments.quiet) return;
+  print_figures(arguments, figures);
+  if (figures.thinned_out > 0) {
+    print_out("left out: {} points of cells of {:.3g} m that have one already\n",
+              figures.thinned_out, figures.cell);
+  }
+  print_out("{} images, {} of them held out to test\n", figures.images, figures.held_out);
+  for (const std::string& note : figures.notes) print_out("note: {}\n", note);
+  if (!arguments.drive.empty()) return;
+  print_out("note: poses alone; --drive writes the images, too\n");
+}
+
 void write(const MapReader& map, ExportArguments& arguments, const std::string& format,
            Warnings& warnings) {
   if (is_frame_format(format)) {
@@ -83,6 +113,9 @@ void write(const MapReader& map, ExportArguments& arguments, const std::string& 
   parse_point_choice(arguments);
   if (format == "mesh" || format == "glb") {
     return write_mesh(map, arguments, format == "mesh", warnings);
+  }
+  if (format == "colmap" || format == "nerf") {
+    return write_views(map, arguments, format, warnings);
   }
   FilesBeside beside;
   if (arguments.viewer) beside = viewer_files(map, viewer_page(), /*mesh=*/false);

@@ -8,6 +8,7 @@
 #include "app/warnings.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
 #include "fovea/exporting/orthophoto/orthophoto_writer.h"
+#include "fovea/exporting/views/view_export.h"
 #include "fovea/map/point_files/point_stream.h"
 
 namespace fovea::app {
@@ -19,6 +20,8 @@ struct ExportArguments {
   double voxel = MeshOptions().voxel;
   double pixel = OrthophotoOptions().pixel;
   int color_depth = 8;  // bits
+  std::string drive;    // whose images are written, too, or empty
+  std::size_t max_points = kTrainingPoints;
   bool double_positions = false, viewer = false, root_only = false;
   bool may_be_empty = false;  // no orthophoto of a map without chosen points
   bool if_missing = false, force = false, quiet = false;

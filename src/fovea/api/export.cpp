@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "fovea/drive/command_files.h"
@@ -13,6 +14,8 @@
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
 #include "fovea/exporting/orthophoto/orthophoto_writer.h"
 #include "fovea/exporting/tileset/tileset_writer.h"
+#include "fovea/exporting/views/colmap_writer.h"
+#include "fovea/exporting/views/nerf_writer.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/point_files/las_writer.h"
 #include "fovea/map/point_files/pcd_writer.h"
@@ -23,8 +26,8 @@ namespace fovea {
 namespace {
 
 constexpr const char* kOrthophoto = "orthophoto";
-constexpr std::array<std::string_view, 7> kPointFormats = {"ply",  "pcd", "las",      "3dtiles",
-                                                           "mesh", "glb", kOrthophoto};
+constexpr std::array<std::string_view, 9> kPointFormats = {
+    "ply", "pcd", "las", "3dtiles", "mesh", "glb", "colmap", "nerf", kOrthophoto};
 
 std::string format_of(const std::filesystem::path& output, const ExportOptions& options) {
   std::string format = options.format;
@@ -35,7 +38,7 @@ std::string format_of(const std::filesystem::path& output, const ExportOptions& 
   if (has_points || is_frame_format(format)) return format;
   throw ConfigError(fmt::format("there is no export format '{}'", format), output.string(),
                     "give ExportOptions::format: ply, pcd, las, 3dtiles, mesh, glb, orthophoto, "
-                    "tum, csv, geojson, frames or kitti-poses");
+                    "colmap, nerf, tum, csv, geojson, frames or kitti-poses");
 }
 
 PointChoice point_choice(const MapReader& map, const ExportOptions& options) {
@@ -74,6 +77,32 @@ ExportedMap write_mesh(const MapReader& map, const std::filesystem::path& output
   ExportedMap result = exported(figures);
   result.triangles = figures.triangles;
   result.tiles = figures.tiles;
+  return result;
+}
+
+ExportedMap write_views(const MapReader& reader, const std::filesystem::path& map,
+                        const std::filesystem::path& output, const std::string& format,
+                        const ExportOptions& options) {
+  if (!options.crs.empty() && options.crs != "local") {
+    throw ConfigError(fmt::format("the format {} has no other coordinates than local", format),
+                      "ExportOptions::crs", "leave it empty");
+  }
+  if (options.max_points < kLeastTrainingPoints || options.max_points > kMostTrainingPoints ||
+      !(options.voxel >= kLeastCell && std::isfinite(options.voxel))) {
+    throw ConfigError(fmt::format("the format {} has {} to {} points of cells of {} m or more",
+                                  format, kLeastTrainingPoints, kMostTrainingPoints, kLeastCell),
+                      "ExportOptions", "give other values of max_points and voxel");
+  }
+  const auto write = format == "nerf" ? write_nerf : write_colmap;
+  const ViewExportFigures figures = write(reader, map, output,
+                                          {.points = point_choice(reader, options),
+                                           .drive = options.drive,
+                                           .max_points = options.max_points,
+                                           .cell = options.voxel,
+                                           .force = options.force});
+  ExportedMap result = exported(figures);
+  result.images = figures.images;
+  result.held_out = figures.held_out;
   return result;
 }
 
@@ -118,6 +147,9 @@ ExportedMap export_map(const std::filesystem::path& map, const std::filesystem::
                        const ExportOptions& options) {
   const std::string format = format_of(output, options);
   const MapReader reader(map);
+  if (format == "colmap" || format == "nerf") {
+    return write_views(reader, map, output, format, options);
+  }
   if (!is_frame_format(format)) return write_points(reader, output, format, options);
   write_frame_format(reader, format, output, options.force);
   return {};
