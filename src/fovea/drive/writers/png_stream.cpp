@@ -98,7 +98,7 @@ void PngStream::put_row(std::span<const std::uint8_t> rgba) {
 }
 
 void PngStream::finish() {
-  State& state = *state_;
+  const State& state = *state_;
   if (state.rows_left > 0) throw std::logic_error("rows of a picture are missing");
   if (!write_end(state.png)) state.fail();
 }
