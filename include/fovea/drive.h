@@ -42,6 +42,8 @@ class FOVEA_API DriveFrame {
   const PointCloud& scan() const;
   /// An image for each of Drive::cameras(); empty where it is missing.
   const std::vector<Image>& images() const;
+  /// Why images are empty, a line each: "camera 2: missing image, FILE".
+  std::vector<std::string> missing_images() const;
   /// Points of the scan that are not finite or out of reach, and not in scan().
   std::size_t points_dropped() const;
 
@@ -69,6 +71,8 @@ class FOVEA_API Drive {
   explicit Drive(const std::filesystem::path& folder, const DriveOptions& options = {});
 
   const std::filesystem::path& folder() const;
+  /// "kitti-raw", "kitti-odometry" or "generic" (a folder with a drive.toml).
+  const std::string& kind() const;
   /// Indices of the frames, ascending; some of them may turn out to be unusable.
   std::vector<int> frames() const;
   /// @throws InputError         if the frame lacks its scan, its stamp or all images
@@ -89,6 +93,8 @@ class FOVEA_API Drive {
   const std::optional<RigidMotion>& T_body_lidar() const;
   /// What a user should know of the drive, a line each.
   const std::vector<std::string>& warnings() const;
+  /// The warnings, and lines that only inform.
+  const std::vector<std::string>& notes() const;
 
   struct Content;
   const std::shared_ptr<const Content>& content() const { return content_; }

@@ -2,13 +2,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "fovea/image.h"
 #include "fovea/mapper.h"
@@ -24,12 +28,13 @@ struct LivePose {
   TimeNs stamp = 0;
   std::string state;  ///< "tracked", "lost" or "restarted"
   RigidMotion T_local_lidar = RigidMotion::Identity();
-  /// Of x, y, z (m) and the rotations about them (rad), in the frame `local`; absent: not known.
+  /// Of a twist of the LiDAR in its own frame, rotation first (rad^2, m^2); absent: not known.
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;
 };
 
 struct LiveMapperOptions {
   MapperSettings settings = {};
+  std::vector<int> cameras = {};    ///< numbers; empty: as in DriveOptions
   bool expects_navigation = false;  ///< the beginning waits for poses or positions
   double max_wait = 0.3;            ///< s from the arrival of a scan, for its images and positions
   bool every_frame = false;         ///< full queues make the add functions wait: nothing is dropped
@@ -90,6 +95,13 @@ class FOVEA_API LiveMapper {
 
   /// What the beginning waits for: "images of camera front"; empty: nothing.
   std::string missing() const;
+  /// Counts of what came and of what was not used so far, by name (docs/live.md).
+  std::map<std::string, std::size_t> figures() const;
+  /// Ends the map early, with the frames at hand. Does not wait; on_pose may call it.
+  void stop();
+  /// Takes no more data, and waits for the map, but not longer than `time`.
+  /// @return false if the map has not ended; otherwise close() does not wait
+  bool close_within(std::chrono::milliseconds time);
   /// Completes the map with the frames at hand.
   /// @throws InputError  if no frame could begin
   MapFigures close();

@@ -12,6 +12,7 @@
 #include "fovea/image.h"
 #include "fovea/point_cloud.h"
 #include "fovea/rigid_motion.h"
+#include "fovea/sweep_motion.h"
 #include "fovea/time.h"
 
 namespace fovea {
@@ -19,6 +20,15 @@ namespace fovea {
 enum class FrameStatus { kMapped, kHeldOut, kSkipped };
 /// "mapped", "held-out" or "skipped".
 FOVEA_API const char* to_string(FrameStatus status);
+
+/// The image of one camera in a frame of a map.
+struct MappedView {
+  int camera = 0;               ///< its number
+  std::optional<TimeNs> stamp;  ///< when the image was taken
+  /// Base-2 logarithms of the gains of red, green and blue: image = map * 2^gain. Absent: not
+  /// estimated.
+  std::optional<Eigen::Vector3d> log2_gain;
+};
 
 /// A frame of a map.
 struct MappedFrame {
@@ -28,7 +38,13 @@ struct MappedFrame {
   std::string note;  ///< why it was skipped, or what a user should know of it
   /// Of a skipped frame interpolated between its neighbors.
   RigidMotion T_local_lidar = RigidMotion::Identity();
-  std::map<std::string, double> figures;  ///< by name (docs/map-format.md)
+  std::map<std::string, double> figures;                     ///< by name (docs/map-format.md)
+  std::map<std::string, double> milliseconds = {};           ///< wall time by stage
+  std::optional<RigidMotion> T_local_lidar_navigation = {};  ///< pose by GPS/INS
+  RigidMotion T_odom_lidar = RigidMotion::Identity();        ///< in a frame without jumps
+  int submap = -1;                                           ///< -1: of a skipped frame
+  std::optional<SweepMotion> motion = {};                    ///< of the LiDAR at the stamp
+  std::vector<MappedView> views = {};                        ///< used images, by camera
 };
 
 /// Which points of a map to read.

@@ -44,8 +44,10 @@ class FOVEA_API FrameMapper {
   std::size_t size() const;   ///< number of points so far
   PointCloud points() const;  ///< so far, in the frame `local` as of the last frame, m
 
- private:
   struct Content;
+  const Content& content() const { return *content_; }
+
+ private:
   std::unique_ptr<Content> content_;
 };
 

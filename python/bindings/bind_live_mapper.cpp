@@ -3,16 +3,13 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "fovea/core/read_file.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/errors.h"
 #include "fovea/live.h"
-#include "fovea/pipeline/live_state.h"
 #include "python/bindings/bindings.h"
-#include "python/bindings/json_object.h"
 #include "python/bindings/live_mapper.h"
 #include "python/bindings/settings.h"
 
@@ -20,8 +17,6 @@ namespace fovea::python {
 namespace py = pybind11;
 namespace fs = std::filesystem;
 namespace {
-
-constexpr double kMaxWait = 0.3;  // s, as in LiveOptions
 
 /// The file drive.toml; nothing if `drive` is its text.
 std::optional<fs::path> file_of(const py::object& drive) {
@@ -32,58 +27,49 @@ std::optional<fs::path> file_of(const py::object& drive) {
   return fs::is_directory(path) ? path / "drive.toml" : path;
 }
 
-/// OutputError for files that the mapper may not write.
-void check_outputs(const std::optional<fs::path>& drive, const MapJob& job,
-                   const fs::path& record) {
-  CommandFiles files;
-  if (drive) files.inputs = {drive->string()};
-  files.outputs = {{job.output.string(), ContentKind::kMap, job.force || job.resume}};
-  files.folder = {record.string(), FolderUse::kReplace};
+/// OutputError for outputs that would replace the description of the sensors.
+void check_input(const fs::path& drive, const LiveRunOptions& options) {
+  const LiveMapperOptions& mapper = options.mapper;
+  CommandFiles files{{drive.string()}, {}, {mapper.record.string(), FolderUse::kReplace}};
+  files.outputs = {{options.output.string(), ContentKind::kMap, mapper.force || mapper.resume}};
   check_files(files);
 }
 
-std::unique_ptr<LiveMapper> make_mapper(const py::object& drive, const fs::path& output,
-                                        const std::string& preset, const py::dict& settings,
-                                        const std::vector<int>& cameras, int threads, bool resume,
-                                        bool force, double max_wait, bool every_frame,
-                                        bool expects_navigation,
-                                        const std::optional<fs::path>& record,
-                                        const py::object& on_pose) {
+std::unique_ptr<PythonLiveMapper> make_live_mapper(
+    const py::object& drive, const fs::path& output, const std::string& preset,
+    const py::dict& settings, const std::vector<int>& cameras, int threads, bool resume, bool force,
+    double max_wait, bool every_frame, bool expects_navigation,
+    const std::optional<fs::path>& record, const py::object& on_pose) {
   LiveRunOptions options;
-  options.job.output = output;
-  options.job.settings = map_settings(preset, settings);
-  options.job.resume = resume;
-  options.job.force = force;
-  options.job.texture_every_frame = every_frame;
-  options.threads = threads;
+  options.output = output;
+  options.mapper = {mapper_settings(preset, settings),
+                    cameras,
+                    expects_navigation,
+                    max_wait,
+                    every_frame,
+                    resume,
+                    force,
+                    record.value_or(fs::path()),
+                    threads,
+                    {}};
   options.on_pose = on_pose;
-  options.source.drive.cameras = cameras;
-  options.source.max_wait = max_wait;
-  options.source.waits = every_frame;
-  options.source.expects_navigation = expects_navigation;
-  options.source.record = record.value_or(fs::path());
-  if (every_frame) {
-    options.source.longest_beginning = std::max(options.source.longest_beginning, max_wait);
-  }
   if (!on_pose.is_none() && PyCallable_Check(on_pose.ptr()) == 0) {
     throw py::type_error("on_pose cannot be called");
   }
-  if (!on_pose.is_none() && options.job.settings.is_paper()) {
-    throw ConfigError("the paper's method gives no poses before the map has their frames",
-                      "on_pose", "leave it out, or choose another preset");
+  if (const std::optional<fs::path> file = file_of(drive)) {
+    check_input(*file, options);
+    options.drive_toml = read_text(*file);
+  } else {
+    options.drive_toml = drive.cast<std::string>();
   }
-  const std::optional<fs::path> file = file_of(drive);
-  check_outputs(file, options.job, options.source.record);
-  options.drive_toml = file ? read_text(*file) : drive.cast<std::string>();
-  if (resume) continue_map(output, options.source);
-  return std::make_unique<LiveMapper>(std::move(options));
+  return std::make_unique<PythonLiveMapper>(std::move(options));
 }
 
 /// Nullptr before the constructor has ended.
 LiveRun* run_of(PyObject* mapper) {
   auto* const instance = reinterpret_cast<py::detail::instance*>(mapper);
   if (!instance->get_value_and_holder().holder_constructed()) return nullptr;
-  return &py::cast<LiveMapper&>(py::handle(mapper)).run();
+  return &py::cast<PythonLiveMapper&>(py::handle(mapper)).run();
 }
 
 /// The garbage collector finds cycles through on_pose and what it raised.
@@ -129,7 +115,7 @@ void bind_live_pose(py::module_& module) {
 
 void bind_live_mapper(py::module_& module) {
   bind_live_pose(module);
-  py::class_<LiveMapper>(
+  py::class_<PythonLiveMapper>(
       module, "LiveMapper",
       "Maps scans, images and poses while a program's threads measure them. Images and poses are "
       "matched to scans by their stamps, as by fovea::LiveSource (docs/live.md): each sensor's "
@@ -138,12 +124,13 @@ void bind_live_mapper(py::module_& module) {
       "and by close(). As a context manager it is closed at the end. After an exception it ends "
       "with the frames at hand.",
       py::custom_type_setup(&let_collect))
-      .def(py::init(&make_mapper), py::arg("drive"), py::arg("output"), py::kw_only(),
+      .def(py::init(&make_live_mapper), py::arg("drive"), py::arg("output"), py::kw_only(),
            py::arg("preset") = "default", py::arg("settings") = py::dict(),
            py::arg("cameras") = std::vector<int>(), py::arg("threads") = 0,
-           py::arg("resume") = false, py::arg("force") = false, py::arg("max_wait") = kMaxWait,
-           py::arg("every_frame") = false, py::arg("expects_navigation") = false,
-           py::arg("record") = py::none(), py::arg("on_pose") = py::none(),
+           py::arg("resume") = false, py::arg("force") = false,
+           py::arg("max_wait") = LiveMapperOptions().max_wait, py::arg("every_frame") = false,
+           py::arg("expects_navigation") = false, py::arg("record") = py::none(),
+           py::arg("on_pose") = py::none(),
            "drive: a drive.toml that describes the sensors (docs/drives.md), as a path or as text "
            "of several lines. max_wait: s from the arrival of a scan, for its images and poses. "
            "every_frame: add functions wait if the mapper is behind; otherwise scans are dropped "
@@ -154,46 +141,43 @@ void bind_live_mapper(py::module_& module) {
            "mapper. What it raises ends the map.\n\n"
            "ConfigError and InputError for a drive.toml that cannot be used, OutputError for "
            "outputs that exist (except with force or resume).")
-      .def("add_scan", &LiveMapper::add_scan, py::arg("stamp"), py::arg("points"), py::kw_only(),
-           py::arg("intensity") = py::none(), py::arg("times") = py::none(),
+      .def("add_scan", &PythonLiveMapper::add_scan, py::arg("stamp"), py::arg("points"),
+           py::kw_only(), py::arg("intensity") = py::none(), py::arg("times") = py::none(),
            py::arg("rings") = py::none(), py::arg("lidar") = "",
            "Adds a sweep. stamp: ns; points: N x 3, m, LiDAR frame, as measured, or N x 4 with "
            "intensity; intensity: N, 0 to intensity_max of drive.toml; times: N, s from the stamp; "
            "rings: N; lidar: the name, of several.")
-      .def("add_image", &LiveMapper::add_image, py::arg("camera"), py::arg("stamp"),
+      .def("add_image", &PythonLiveMapper::add_image, py::arg("camera"), py::arg("stamp"),
            py::arg("image"), py::kw_only(), py::arg("exposure") = py::none(),
            "Adds an image as the camera took it. camera: its name; stamp: ns; image: height x "
            "width x 3 or height x width uint8, or the bytes of a PNG or JPEG file; exposure: s, "
            "times the amplification.")
-      .def("add_pose", &LiveMapper::add_pose, py::arg("stamp"), py::arg("T_world_body"),
+      .def("add_pose", &PythonLiveMapper::add_pose, py::arg("stamp"), py::arg("T_world_body"),
            "Adds a pose of the body of drive.toml, 4x4, m, in a world that never jumps. stamp: ns.")
-      .def("add_position", &LiveMapper::add_position, py::arg("stamp"), py::arg("latitude"),
+      .def("add_position", &PythonLiveMapper::add_position, py::arg("stamp"), py::arg("latitude"),
            py::arg("longitude"), py::arg("altitude"), py::kw_only(), py::arg("accuracy") = 0.0,
            py::arg("roll_pitch_yaw") = py::none(),
            "Adds a position of the antenna. stamp: ns; latitude, longitude: degrees; altitude: m; "
            "accuracy: m, standard deviation of a coordinate (0: not known; infinite: no fix); "
            "roll_pitch_yaw: rad, yaw 0 is east.")
-      .def("add_imu", &LiveMapper::add_imu, py::arg("stamp"), py::arg("angular_velocity"),
+      .def("add_imu", &PythonLiveMapper::add_imu, py::arg("stamp"), py::arg("angular_velocity"),
            py::arg("acceleration"), py::kw_only(), py::arg("R_enu_imu") = py::none(),
            "Adds a record of the IMU, in its own frame. stamp: ns; angular_velocity: 3, rad/s; "
            "acceleration: 3, m/s^2, gravity included; R_enu_imu: 3x3, orientation.")
-      .def("add_wheel_speed", &LiveMapper::add_wheel_speed, py::arg("stamp"), py::arg("speed"),
-           "Adds a speed of the body ahead, m/s. stamp: ns.")
-      .def("close", &LiveMapper::close,
+      .def("add_wheel_speed", &PythonLiveMapper::add_wheel_speed, py::arg("stamp"),
+           py::arg("speed"), "Adds a speed of the body ahead, m/s. stamp: ns.")
+      .def("close", &PythonLiveMapper::close,
            "Waits until the map has all frames; data that come later are dropped. Ctrl-C ends the "
            "map with the frames at hand, and is a KeyboardInterrupt. Returns the figures that "
            "`fovea map --report` writes, as a dict, with those of the source as 'live'.")
       .def_property_readonly(
-          "missing", [](LiveMapper& self) { return self.run().source().missing(); },
+          "missing", [](PythonLiveMapper& self) { return self.run().mapper().missing(); },
           "What the beginning of the map waits for; empty: nothing.")
       .def_property_readonly(
-          "figures",
-          [](LiveMapper& self) {
-            return json_object(live_figures_json(self.run().source().figures()));
-          },
+          "figures", [](PythonLiveMapper& self) { return self.run().mapper().figures(); },
           "What came and what was not used, so far, by name.")
       .def("__enter__", [](py::object self) { return self; })
-      .def("__exit__", [](LiveMapper& self, const py::object&, const py::object& raised,
+      .def("__exit__", [](PythonLiveMapper& self, const py::object&, const py::object& raised,
                           const py::object&) { self.exit(raised); });
   py::module_::import("atexit").attr("register")(py::cpp_function(&LiveRun::end_all));
 }

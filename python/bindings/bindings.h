@@ -10,6 +10,8 @@ void bind_frame_record(pybind11::module_& module);
 void bind_points(pybind11::module_& module);
 void bind_map(pybind11::module_& module);
 void bind_drive(pybind11::module_& module);
+void bind_camera(pybind11::module_& module);
+void bind_frame(pybind11::module_& module);
 void bind_drive_writer(pybind11::module_& module);
 void bind_map_drive(pybind11::module_& module);
 void bind_mapper(pybind11::module_& module);

@@ -5,24 +5,19 @@
 #include <optional>
 #include <utility>
 
-#include "fovea/drive/frame_source.h"
+#include "fovea/drive.h"
 
 namespace fovea::python {
 
 /// Half-open; an open end is the drive's own.
 using FrameRange = std::pair<std::optional<int>, std::optional<int>>;
 
-struct Drive {
-  std::shared_ptr<const FrameSource> source;
-};
+DriveOptions drive_options(const std::vector<int>& cameras, const FrameRange& frames);
 
-/// A frame that knows its drive.
-struct DriveFrame {
-  std::shared_ptr<const FrameSource> source;
-  std::shared_ptr<const Frame> frame;
-
-  /// std::invalid_argument if it is another drive's: its cameras are not those that are expected.
-  void require_of(const Drive& drive) const;
+/// A frame with the drive that says what its images and poses are.
+struct FrameOfDrive {
+  Drive drive;
+  DriveFrame frame;
 };
 
 }  // namespace fovea::python

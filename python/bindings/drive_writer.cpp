@@ -1,6 +1,4 @@
 // fovea.DriveWriter: the base of adapters for other data sets.
-#include "fovea/drive/writers/drive_writer.h"
-
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -8,6 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "fovea/api/recorded_camera.h"
+#include "fovea/drive.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/sensor_arrays.h"
 
@@ -15,33 +15,25 @@ namespace fovea::python {
 namespace py = pybind11;
 namespace {
 
-/// A camera without its name.
+/// A camera without its name and number.
 struct CameraModel {
-  LensCamera optics;
-  RigidMotion T_lidar_cam;
+  DriveCamera camera;
 };
-
-LensModel model_of(const std::string& name) {
-  for (const LensModel model : {LensModel::kNone, LensModel::kPlumbBob,
-                                LensModel::kRationalPolynomial, LensModel::kEquidistant}) {
-    if (to_string(model) == name) return model;
-  }
-  throw std::invalid_argument("distortion_model is '" + name +
-                              "', not 'none', 'plumb_bob', 'rational_polynomial' or 'equidistant'");
-}
 
 CameraModel make_camera(int width, int height, const Eigen::Matrix3d& K, const Doubles& T_lidar_cam,
                         const std::string& distortion_model, const std::vector<double>& D) {
-  const LensModel model = model_of(distortion_model);
-  const auto coefficients = lens_coefficients(model, D);
-  if (!coefficients) throw std::invalid_argument("D has no coefficients of " + distortion_model);
-  CameraModel camera{
-      {width, height, K(0, 0), K(1, 1), K(0, 2), K(1, 2), Lens(model, *coefficients)},
-      motion_from(T_lidar_cam)};
-  if (width < 1 || height < 1 || !camera.optics.has_pinhole()) {
-    throw std::invalid_argument("K, width and height are not those of a camera");
-  }
-  return camera;
+  DriveCamera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = K(0, 0);
+  camera.fy = K(1, 1);
+  camera.cx = K(0, 2);
+  camera.cy = K(1, 2);
+  camera.distortion_model = distortion_model;
+  camera.distortion = D;
+  camera.T_lidar_cam = motion_from(T_lidar_cam);
+  recorded_camera(camera);  // an error for one that is none
+  return {camera};
 }
 
 std::variant<Image, std::filesystem::path> content_of(const py::object& image) {
@@ -55,15 +47,17 @@ class PythonDriveWriter {
                     const std::map<std::string, CameraModel>& cameras, bool force, bool compensated,
                     const std::map<std::string, Doubles>& further_lidars,
                     const std::string& first_lidar) {
-    std::vector<RecordedCamera> recorded;
-    for (const auto& [name, camera] : cameras) {
-      recorded.push_back({name, int(recorded.size()), camera.optics, camera.T_lidar_cam});
+    std::vector<DriveCamera> written;
+    for (const auto& [name, model] : cameras) {
+      DriveCamera& camera = written.emplace_back(model.camera);
+      camera.name = name;
+      camera.number = static_cast<int>(written.size()) - 1;
     }
     DriveWriterOptions options{force, compensated, {}, {}, first_lidar};
     for (const auto& [name, T_lidar_sensor] : further_lidars) {
       options.further_lidars.emplace(name, motion_from(T_lidar_sensor));
     }
-    writer_.emplace(path, std::move(recorded), std::move(options));
+    writer_.emplace(path, written, options);
   }
 
   void add_scan(const std::string& lidar, const Floats& points, TimeNs stamp,
@@ -93,25 +87,25 @@ class PythonDriveWriter {
   }
 
   py::dict close() {
-    const DriveWriterFigures figures = opened().close();
+    const WrittenDrive figures = opened().close();
     writer_.reset();
     py::dict result;
     result["scans"] = figures.scans;
     result["images"] = figures.images;
     result["poses"] = figures.poses;
-    result["points_dropped"] = figures.dropped.total();
+    result["points_dropped"] = figures.points_dropped;
     return result;
   }
   void discard() { writer_.reset(); }
   bool is_open() const { return writer_.has_value(); }
 
  private:
-  AdapterWriter& opened() {
+  DriveWriter& opened() {
     if (!writer_) throw std::logic_error("the drive is closed");
     return *writer_;
   }
 
-  std::optional<AdapterWriter> writer_;
+  std::optional<DriveWriter> writer_;
 };
 
 }  // namespace

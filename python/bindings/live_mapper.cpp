@@ -3,7 +3,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fovea/geometry/pose_file.h"
 #include "python/bindings/json_object.h"
 
 namespace fovea::python {
@@ -41,7 +40,7 @@ void require_finite(const Vectors&... vectors) {
 
 }  // namespace
 
-LiveMapper::~LiveMapper() {
+PythonLiveMapper::~PythonLiveMapper() {
   const bool was_closed = run_->was_closed();
   const std::string failure = run_->failure();
   LiveRun::end(run_);
@@ -54,59 +53,58 @@ LiveMapper::~LiveMapper() {
   PyErr_WriteUnraisable(nullptr);
 }
 
-void LiveMapper::add_scan(TimeNs stamp, const Floats& points,
-                          const std::optional<Floats>& intensity,
-                          const std::optional<Floats>& times, const std::optional<Rings>& rings,
-                          const std::string& lidar) {
-  LiveScan scan{lidar, stamp, scan_of(points, intensity, times, rings)};
-  run_->add([&](LiveSource& source) { source.add_scan(std::move(scan)); });
+void PythonLiveMapper::add_scan(TimeNs stamp, const Floats& points,
+                                const std::optional<Floats>& intensity,
+                                const std::optional<Floats>& times,
+                                const std::optional<Rings>& rings, const std::string& lidar) {
+  PointCloud scan = scan_of(points, intensity, times, rings);
+  run_->add([&](LiveMapper& mapper) { mapper.add_scan(stamp, std::move(scan), lidar); });
 }
 
-void LiveMapper::add_image(const std::string& camera, TimeNs stamp, const py::object& image,
-                           std::optional<double> exposure) {
-  LiveImage added{camera, stamp, {}, exposure};
+void PythonLiveMapper::add_image(const std::string& camera, TimeNs stamp, const py::object& image,
+                                 std::optional<double> exposure) {
+  std::variant<Image, std::string> content;
   if (py::isinstance<py::bytes>(image)) {
-    added.content = image.cast<std::string>();
+    content = image.cast<std::string>();
   } else {
-    added.content = image_from(image);
+    content = image_from(image);
   }
-  run_->add([&](LiveSource& source) { source.add_image(std::move(added)); });
+  run_->add(
+      [&](LiveMapper& mapper) { mapper.add_image(camera, stamp, std::move(content), exposure); });
 }
 
-void LiveMapper::add_pose(TimeNs stamp, const Doubles& T_world_body) {
-  const RecordedPose pose{stamp, motion_from(T_world_body)};
-  run_->add([&](LiveSource& source) { source.add_pose(pose); });
+void PythonLiveMapper::add_pose(TimeNs stamp, const Doubles& T_world_body) {
+  const RigidMotion pose = motion_from(T_world_body);
+  run_->add([&](LiveMapper& mapper) { mapper.add_pose(stamp, pose); });
 }
 
-void LiveMapper::add_position(TimeNs stamp, double latitude, double longitude, double altitude,
-                              double accuracy, const std::optional<Vector>& roll_pitch_yaw) {
+void PythonLiveMapper::add_position(TimeNs stamp, double latitude, double longitude,
+                                    double altitude, double accuracy,
+                                    const std::optional<Vector>& roll_pitch_yaw) {
   require_finite(Vector(latitude, longitude, altitude));
   if (roll_pitch_yaw) require_finite(*roll_pitch_yaw);
   if (!(accuracy >= 0)) throw std::invalid_argument("accuracy is not 0 or more");
-  const RecordedPosition position{stamp, {latitude, longitude, altitude}, accuracy, roll_pitch_yaw};
-  run_->add([&](LiveSource& source) { source.add_position(position); });
+  const GnssPosition position{latitude, longitude, altitude, accuracy, roll_pitch_yaw};
+  run_->add([&](LiveMapper& mapper) { mapper.add_position(stamp, position); });
 }
 
-void LiveMapper::add_imu(TimeNs stamp, const Vector& angular_velocity, const Vector& acceleration,
-                         const std::optional<Eigen::Matrix3d>& R_enu_imu) {
+void PythonLiveMapper::add_imu(TimeNs stamp, const Vector& angular_velocity,
+                               const Vector& acceleration,
+                               const std::optional<Eigen::Matrix3d>& R_enu_imu) {
   require_finite(angular_velocity, acceleration);
-  RecordedInertia inertia{stamp, std::nullopt, angular_velocity, acceleration};
-  if (R_enu_imu) {
-    Eigen::Matrix<double, 3, 4> pose = Eigen::Matrix<double, 3, 4>::Zero();
-    pose.leftCols<3>() = *R_enu_imu;
-    inertia.R_enu_imu = Eigen::Quaterniond(checked_pose(pose).linear());
-  }
-  run_->add([&](LiveSource& source) { source.add_inertia(inertia); });
+  run_->add([&](LiveMapper& mapper) {
+    mapper.add_imu(stamp, angular_velocity, acceleration, R_enu_imu);
+  });
 }
 
-void LiveMapper::add_wheel_speed(TimeNs stamp, double speed) {
+void PythonLiveMapper::add_wheel_speed(TimeNs stamp, double speed) {
   if (!std::isfinite(speed)) throw std::invalid_argument("a number is not finite");
-  run_->add([&](LiveSource& source) { source.add_wheel_speed({stamp, speed}); });
+  run_->add([&](LiveMapper& mapper) { mapper.add_wheel_speed(stamp, speed); });
 }
 
-py::object LiveMapper::close() { return json_object(run_->close()); }
+py::object PythonLiveMapper::close() { return json_object(run_->close()); }
 
-void LiveMapper::exit(const py::object& raised) {
+void PythonLiveMapper::exit(const py::object& raised) {
   if (raised.is_none()) {
     run_->close();
     return;

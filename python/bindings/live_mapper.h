@@ -2,25 +2,23 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "python/bindings/live_run.h"
 #include "python/bindings/sensor_arrays.h"
 
 namespace fovea::python {
 
-/// fovea.LiveMapper, whose docstrings describe the functions.
-class LiveMapper {
+/// fovea.LiveMapper in Python, whose docstrings describe the functions.
+class PythonLiveMapper {
  public:
-  explicit LiveMapper(LiveRunOptions options) : run_(LiveRun::start(std::move(options))) {}
+  explicit PythonLiveMapper(LiveRunOptions options) : run_(LiveRun::start(std::move(options))) {}
   /// Ends the run, and reports if it was not closed.
-  ~LiveMapper();
-  LiveMapper(const LiveMapper&) = delete;
-  LiveMapper& operator=(const LiveMapper&) = delete;
+  ~PythonLiveMapper();
+  PythonLiveMapper(const PythonLiveMapper&) = delete;
+  PythonLiveMapper& operator=(const PythonLiveMapper&) = delete;
 
   void add_scan(TimeNs stamp, const Floats& points, const std::optional<Floats>& intensity,
                 const std::optional<Floats>& times, const std::optional<Rings>& rings,

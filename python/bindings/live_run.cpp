@@ -1,22 +1,16 @@
 #include "python/bindings/live_run.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 #include <vector>
 
-#include "fovea/api/live_pose.h"
-#include "fovea/core/parallel.h"
-#include "fovea/pipeline/map_live.h"
-#include "fovea/pipeline/summary_json.h"
 #include "python/bindings/run_watch.h"
 
 namespace fovea::python {
 namespace py = pybind11;
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kSignalCheck{50};
 
@@ -34,44 +28,34 @@ std::vector<std::shared_ptr<LiveRun>>& dropped_runs() {
   return runs;
 }
 
-/// A note may quote a name in any encoding.
-std::string text_of(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
 }  // namespace
 
-std::string live_figures_json(const LiveFigures& figures) { return text_of(to_json(figures)); }
-
-LiveRun::LiveRun(LiveRunOptions options)
-    : source_(options.drive_toml, options.source),
-      job_(std::move(options.job)),
-      threads_(options.threads),
-      on_pose_(std::move(options.on_pose)) {
-  job_.stop = stop_.get_token();
-  if (!on_pose_.is_none()) {
-    job_.on_tracked = [this](const FrameResult& frame) { report_pose(frame); };
-  }
-}
-
 std::shared_ptr<LiveRun> LiveRun::start(LiveRunOptions options) {
-  std::shared_ptr<LiveRun> run(new LiveRun(std::move(options)));
+  std::shared_ptr<LiveRun> run(new LiveRun(std::move(options.on_pose)));
+  if (!run->on_pose_.is_none()) {
+    options.mapper.on_pose = [&here = *run](const LivePose& pose) { here.report_pose(pose); };
+  }
+  run->mapper_ = std::make_unique<LiveMapper>(options.drive_toml, options.output, options.mapper);
   std::erase_if(all_runs(), [](const std::weak_ptr<LiveRun>& other) { return other.expired(); });
   all_runs().push_back(run);
-  run->thread_ = std::jthread([&here = *run] { here.run(); });
   return run;
 }
 
-void LiveRun::add(const std::function<void(LiveSource&)>& add) {
+void LiveRun::add(const std::function<void(LiveMapper&)>& add) {
   require_outside_on_pose();
-  rethrow();
-  if (was_closed_) return;
+  rethrow_raised();
+  if (was_closed_) {
+    // With the GIL: end_all() does not wait for this thread. Throws what has ended the map early.
+    // Otherwise data after the end are dropped.
+    if (mapper_->close_within(std::chrono::milliseconds(0))) mapper_->close();
+    return;
+  }
   ++callers_;
   std::exception_ptr refused;
   {
     const py::gil_scoped_release others_run;
     try {
-      add(source_);
+      add(*mapper_);
     } catch (...) {
       refused = std::current_exception();
     }
@@ -83,25 +67,22 @@ void LiveRun::add(const std::function<void(LiveSource&)>& add) {
 std::string LiveRun::close() {
   require_outside_on_pose();
   was_closed_ = true;
-  source_.close();
-  while (!wait_for(kSignalCheck)) {
+  while (!close_within(kSignalCheck)) {
     try {
       raise_signals();
     } catch (...) {
       stop();
-      wait_for_thread();
+      wait_for_end();
       throw;
     }
   }
-  wait_for_thread();
-  rethrow();
-  return summary_;
+  rethrow_raised();
+  return mapper_->close().json;
 }
 
 void LiveRun::stop() {
   was_closed_ = true;
-  stop_.request_stop();
-  source_.close();
+  mapper_->stop();
 }
 
 void LiveRun::end(const std::shared_ptr<LiveRun>& run) {
@@ -109,7 +90,7 @@ void LiveRun::end(const std::shared_ptr<LiveRun>& run) {
   if (run_in_on_pose == run.get()) {
     dropped_runs().push_back(run);
   } else {
-    run->wait_for_thread();
+    run->wait_for_end();
   }
 }
 
@@ -127,77 +108,41 @@ void LiveRun::end_all() {
   dropped_runs().clear();
 }
 
-void LiveRun::run() {
-  std::exception_ptr error;
-  try {
-    map();
-  } catch (...) {
-    error = std::current_exception();
-  }
-  const std::lock_guard lock(guard_);
-  error_ = error;
-  has_ended_ = true;
-  ended_.notify_all();
-}
-
-void LiveRun::map() {
-  const ThreadLimit limit(threads_);
-  MapSummary summary = map_live(source_, job_, {});
-  source_.finish_recording();
-  const LiveFigures figures = source_.figures();
-  summary.append(figures);
-  ordered_json json = to_json(summary);
-  json["live"] = to_json(figures);
-  const std::lock_guard lock(guard_);
-  summary_ = text_of(json);
-}
-
-void LiveRun::report_pose(const FrameResult& frame) {
+void LiveRun::report_pose(const LivePose& pose) {
   const py::gil_scoped_acquire running;
   const py::object on_pose = on_pose_;  // which the garbage collector may clear
   if (raised_ || !on_pose || on_pose.is_none()) return;
   run_in_on_pose = this;
   try {
-    on_pose(live_pose(frame));
+    on_pose(pose);
   } catch (py::error_already_set& exception) {
     raised_ = exception.value();
     if (exception.trace()) PyException_SetTraceback(raised_.ptr(), exception.trace().ptr());
-    stop_.request_stop();
+    mapper_->stop();
   }
   run_in_on_pose = nullptr;
 }
 
-bool LiveRun::wait_for(std::chrono::milliseconds time) {
+bool LiveRun::close_within(std::chrono::milliseconds time) {
   const py::gil_scoped_release others_run;
-  std::unique_lock lock(guard_);
-  return ended_.wait_for(lock, time, [&] { return has_ended_; });
+  return mapper_->close_within(time);
 }
 
-void LiveRun::wait_for_thread() {
-  if (!thread_.joinable()) return;
-  {
-    const py::gil_scoped_release others_run;
-    std::unique_lock lock(guard_);
-    ended_.wait(lock, [&] { return has_ended_; });
+void LiveRun::wait_for_end() {
+  while (!close_within(std::chrono::hours(1))) {
   }
-  // The thread needs the GIL no more.
-  if (thread_.joinable()) thread_.join();
 }
 
-void LiveRun::rethrow() const {
-  if (raised_) {
-    PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(raised_.ptr())), raised_.ptr());
-    throw py::error_already_set();
-  }
-  std::unique_lock lock(guard_);
-  const std::exception_ptr error = error_;
-  lock.unlock();
-  if (error) std::rethrow_exception(error);
+void LiveRun::rethrow_raised() const {
+  if (!raised_) return;
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(raised_.ptr())), raised_.ptr());
+  throw py::error_already_set();
 }
 
-std::string LiveRun::failure() const {
+std::string LiveRun::failure() {
   try {
-    rethrow();
+    rethrow_raised();
+    if (close_within(std::chrono::milliseconds(0))) mapper_->close();
   } catch (const std::exception& error) {
     return error.what();
   }

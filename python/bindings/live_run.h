@@ -1,45 +1,37 @@
-// The thread of a fovea.LiveMapper: frames of a live source into a map file.
+// The run of a fovea.LiveMapper: its map, its on_pose and its end.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
 #include <chrono>
-#include <condition_variable>
-#include <exception>
+#include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <optional>
-#include <stop_token>
 #include <string>
-#include <thread>
 
-#include "fovea/drive/live/live_source.h"
-#include "fovea/pipeline/frame_result.h"
-#include "fovea/pipeline/map_drive.h"
+#include "fovea/live.h"
 
 namespace fovea::python {
 
 struct LiveRunOptions {
   std::string drive_toml;
-  LiveOptions source;
-  MapJob job;
-  int threads = 0;
+  std::filesystem::path output;
+  LiveMapperOptions mapper;
   pybind11::object on_pose;  ///< is called with a LivePose; or None
 };
 
-/// Maps in a thread of its own. All functions need the GIL, and release it while they wait.
+/// All functions need the GIL, and release it while they wait.
 class LiveRun {
  public:
-  /// Begins. Errors as LiveSource.
+  /// Begins. Errors as LiveMapper.
   static std::shared_ptr<LiveRun> start(LiveRunOptions options);
   ~LiveRun() = default;  // end() comes first
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
-  /// Calls `add` with the source; not if the source is closed.
+  /// Calls `add` with the mapper.
   /// @throws what has ended the run; std::logic_error in on_pose
-  void add(const std::function<void(LiveSource&)>& add);
+  void add(const std::function<void(LiveMapper&)>& add);
   /// Waits until the map has the frames at hand. Ctrl-C stops the run.
   /// @return the summary, as JSON
   /// @throws what has ended the run; std::logic_error in on_pose
@@ -51,29 +43,22 @@ class LiveRun {
   /// Ends all runs.
   static void end_all();
 
-  /// What has ended the run early; empty: nothing so far.
-  std::string failure() const;
+  /// What has ended the run early; empty: nothing so far. No more data are taken.
+  std::string failure();
   bool was_closed() const { return was_closed_; }
-  const LiveSource& source() const { return source_; }
+  const LiveMapper& mapper() const { return *mapper_; }
   /// For the garbage collector: the objects that the run keeps.
   pybind11::object& on_pose() { return on_pose_; }
   pybind11::object& raised() { return raised_; }
 
  private:
-  explicit LiveRun(LiveRunOptions options);
-  void run();
-  void map();
-  void report_pose(const FrameResult& frame);
+  explicit LiveRun(pybind11::object on_pose) : on_pose_(std::move(on_pose)) {}
+  void report_pose(const LivePose& pose);
   /// @return false if the run has not ended in this time
-  bool wait_for(std::chrono::milliseconds time);
-  void wait_for_thread();
-  void rethrow() const;
+  bool close_within(std::chrono::milliseconds time);
+  void wait_for_end();
+  void rethrow_raised() const;
   void require_outside_on_pose() const;
-
-  LiveSource source_;
-  MapJob job_;
-  const int threads_;
-  std::stop_source stop_;
 
   // With the GIL.
   pybind11::object on_pose_;
@@ -81,16 +66,7 @@ class LiveRun {
   bool was_closed_ = false;
   int callers_ = 0;  // of add()
 
-  mutable std::mutex guard_;  // of all below
-  std::condition_variable ended_;
-  bool has_ended_ = false;
-  std::exception_ptr error_;
-  std::string summary_;
-
-  std::jthread thread_;  // last: it uses the others
+  std::unique_ptr<LiveMapper> mapper_;  // last: its thread uses the others
 };
-
-/// Figures of a source, as JSON.
-std::string live_figures_json(const LiveFigures& figures);
 
 }  // namespace fovea::python

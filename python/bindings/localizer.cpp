@@ -1,12 +1,10 @@
 // fovea.Localizer: where scans were taken in a map made before.
-#include "fovea/localization/localizer.h"
-
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <mutex>
 
-#include "fovea/localization/localize_drive.h"
+#include "fovea/localize.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/drive.h"
@@ -15,44 +13,31 @@ namespace fovea::python {
 namespace py = pybind11;
 namespace {
 
-LocalizationGuess guess_of(const Drive& drive, const MapReader& map, bool use_navigation,
-                           const std::optional<RigidMotion>& first) {
-  LocalizationGuess guess;
-  guess.first = first;
-  if (use_navigation) guess.trajectory = navigation_in_map(drive.source->info(), map.meta());
-  return guess;
-}
-
-/// A localizer with its drive and a map that it alone reads.
-class DriveLocalizer {
+/// A localizer that Python's threads take turns with.
+class PythonLocalizer {
  public:
-  DriveLocalizer(const std::filesystem::path& map, Drive drive, bool use_navigation,
-                 const std::optional<RigidMotion>& first)
-      : drive_(std::move(drive)),
-        map_(map),
-        localizer_(map_, drive_.source->info(), guess_of(drive_, map_, use_navigation, first)) {}
+  PythonLocalizer(const std::filesystem::path& map, const Drive& drive,
+                  const DriveLocalizerOptions& options)
+      : localizer_(map, drive, options) {}
 
-  Localization localize(const DriveFrame& frame) {
-    frame.require_of(drive_);
+  Localization localize(const FrameOfDrive& frame) {
     const py::gil_scoped_release others_run;
     const std::lock_guard one_at_a_time(mutex_);
-    return localizer_.localize(*frame.frame);
+    return localizer_.localize(frame.frame);
   }
 
  private:
-  Drive drive_;
-  MapReader map_;
-  Localizer localizer_;
+  DriveLocalizer localizer_;
   std::mutex mutex_;
 };
 
-std::unique_ptr<DriveLocalizer> make_localizer(
+std::unique_ptr<PythonLocalizer> make_localizer(
     const std::filesystem::path& map, const Drive& drive, bool use_navigation,
     const std::optional<py::array_t<double>>& T_local_lidar) {
-  std::optional<RigidMotion> first;
-  if (T_local_lidar) first = motion_from(*T_local_lidar);
+  DriveLocalizerOptions options{use_navigation, std::nullopt};
+  if (T_local_lidar) options.first = motion_from(*T_local_lidar);
   const py::gil_scoped_release others_run;
-  return std::make_unique<DriveLocalizer>(map, drive, use_navigation, first);
+  return std::make_unique<PythonLocalizer>(map, drive, options);
 }
 
 bool is_localized(const Localization& self) { return self.state == LocalizationState::kLocalized; }
@@ -92,13 +77,13 @@ void bind_localization(py::module_& module) {
 
 void bind_localizer(py::module_& module) {
   bind_localization(module);
-  py::class_<DriveLocalizer>(module, "Localizer",
-                             "Registers the scans of a drive to a map, one after the other.")
+  py::class_<PythonLocalizer>(module, "Localizer",
+                              "Registers the scans of a drive to a map, one after the other.")
       .def(py::init(&make_localizer), py::arg("map"), py::arg("drive"), py::kw_only(),
            py::arg("use_navigation") = true, py::arg("T_local_lidar") = py::none(),
            "The first scan is looked for where GPS/INS says, near T_local_lidar (4x4) or, with "
            "neither, along the map's drives.")
-      .def("localize", &DriveLocalizer::localize, py::arg("frame"),
+      .def("localize", &PythonLocalizer::localize, py::arg("frame"),
            "The drive's next scan. ValueError for a frame of another drive; InputError if the map "
            "is damaged there.");
 }

@@ -4,6 +4,7 @@
 
 #include <mutex>
 
+#include "fovea/api/mapped_frame.h"
 #include "fovea/map/map_store.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
@@ -102,7 +103,9 @@ void bind_map(py::module_& module) {
           "What the map says of itself, text by key (docs/map-format.md).")
       .def_property_readonly(
           "frames",
-          [](const Map& map) { return map.read([](const auto& r) { return r.frames(); }); },
+          [](const Map& map) {
+            return mapped_frames(map.read([](const auto& r) { return r.frames(); }));
+          },
           "A FrameRecord a frame, by index.")
       .def_property_readonly(
           "submaps",

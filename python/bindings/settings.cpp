@@ -2,17 +2,15 @@
 
 #include <pybind11/pybind11.h>
 
-#include "fovea/pipeline/config.h"
-
 namespace fovea::python {
 namespace py = pybind11;
 
-MapSettings map_settings(const std::string& preset, const py::dict& settings) {
-  MapSettings result = load_preset(preset);
+MapperSettings mapper_settings(const std::string& preset, const py::dict& settings) {
+  MapperSettings result{preset, {}};
   // JSON's true, 1.5, "word" and [1, 2] are TOML's as well.
   const py::object dumps = py::module_::import("json").attr("dumps");
   for (const auto& [key, value] : settings) {
-    apply_setting(py::cast<std::string>(key) + "=" + py::cast<std::string>(dumps(value)), result);
+    result.values[py::cast<std::string>(key)] = py::cast<std::string>(dumps(value));
   }
   return result;
 }

@@ -14,6 +14,14 @@ int DriveFrame::index() const { return content_->frame.index; }
 TimeNs DriveFrame::stamp() const { return content_->frame.stamp; }
 const PointCloud& DriveFrame::scan() const { return content_->frame.scan; }
 const std::vector<Image>& DriveFrame::images() const { return content_->frame.images; }
+std::vector<std::string> DriveFrame::missing_images() const {
+  std::vector<std::string> lines;
+  for (const MissingImage& image : content_->frame.missing_images) {
+    lines.push_back(
+        fmt::format("camera {}: {}, {}", image.camera, to_string(image.reason), image.detail));
+  }
+  return lines;
+}
 std::size_t DriveFrame::points_dropped() const { return content_->frame.dropped_points.total(); }
 
 const Frame& frame_of(const Drive& drive, const DriveFrame& frame) {
@@ -24,9 +32,10 @@ const Frame& frame_of(const Drive& drive, const DriveFrame& frame) {
 }
 
 Drive::Drive(const std::filesystem::path& folder, const DriveOptions& options)
-    : content_(std::make_shared<const Content>(Content{open_drive(folder, options)})) {}
+    : content_(std::make_shared<const Content>(Content{open_drive(folder, options), folder})) {}
 
 const std::filesystem::path& Drive::folder() const { return content_->source->info().path; }
+const std::string& Drive::kind() const { return content_->source->info().kind; }
 std::vector<int> Drive::frames() const { return content_->source->info().frame_indices(); }
 
 DriveFrame Drive::load(int index) const {
@@ -65,5 +74,6 @@ const std::optional<RigidMotion>& Drive::T_body_lidar() const {
 const std::vector<std::string>& Drive::warnings() const {
   return content_->source->info().warnings;
 }
+const std::vector<std::string>& Drive::notes() const { return content_->source->info().notes; }
 
 }  // namespace fovea

@@ -10,6 +10,7 @@ namespace fovea {
 
 struct Drive::Content {
   std::unique_ptr<const FrameSource> source;
+  std::filesystem::path folder;  ///< as it was given: the drive may be a folder in it
 };
 
 struct DriveFrame::Content {

@@ -1,47 +1,7 @@
-#include "fovea/drive/writers/drive_writer.h"
-
-#include <fmt/format.h>
-
-#include <array>
-#include <stdexcept>
-
-#include "fovea/drive.h"
+#include "fovea/api/recorded_camera.h"
 
 namespace fovea {
 namespace {
-
-LensModel lens_model_of(const DriveCamera& camera) {
-  constexpr std::array kModels = {LensModel::kNone, LensModel::kPlumbBob,
-                                  LensModel::kRationalPolynomial, LensModel::kEquidistant};
-  for (const LensModel model : kModels) {
-    if (to_string(model) == camera.distortion_model) return model;
-  }
-  throw std::invalid_argument(
-      fmt::format("camera '{}' has the distortion model '{}', not none, plumb_bob, "
-                  "rational_polynomial or equidistant",
-                  camera.name, camera.distortion_model));
-}
-
-RecordedCamera recorded_camera(const DriveCamera& camera) {
-  const LensModel model = lens_model_of(camera);
-  const auto coefficients = lens_coefficients(model, camera.distortion);
-  if (!coefficients) {
-    throw std::invalid_argument(
-        fmt::format("camera '{}' has no coefficients of {}", camera.name, camera.distortion_model));
-  }
-  const LensCamera optics{camera.width,
-                          camera.height,
-                          camera.fx,
-                          camera.fy,
-                          camera.cx,
-                          camera.cy,
-                          Lens(model, *coefficients)};
-  if (camera.width < 1 || camera.height < 1 || !optics.has_pinhole()) {
-    throw std::invalid_argument(fmt::format(
-        "camera '{}' has a size, focal lengths or a center that no camera has", camera.name));
-  }
-  return {camera.name, camera.number, optics, camera.T_lidar_cam};
-}
 
 std::vector<RecordedCamera> recorded_cameras(const std::vector<DriveCamera>& cameras) {
   std::vector<RecordedCamera> recorded;

@@ -1,7 +1,9 @@
 #include "fovea/live.h"
 
-#include <atomic>
+#include <algorithm>
+#include <condition_variable>
 #include <exception>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <stop_token>
 #include <thread>
@@ -12,6 +14,7 @@
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/live/live_source.h"
+#include "fovea/errors.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/pipeline/live_state.h"
 #include "fovea/pipeline/map_live.h"
@@ -22,6 +25,7 @@ namespace {
 
 LiveOptions source_options(const std::filesystem::path& output, const LiveMapperOptions& options) {
   LiveOptions source;
+  source.drive.cameras = options.cameras;
   source.max_wait = options.max_wait;
   source.longest_beginning = std::max(source.longest_beginning, options.max_wait);
   source.expects_navigation = options.expects_navigation;
@@ -48,29 +52,44 @@ struct LiveMapper::Content {
         on_pose(live_pose(frame));
       };
     }
-    mapping = std::jthread([this] { map(); });
+    mapping = std::jthread([this] { run(); });
+  }
+
+  void run() {
+    std::exception_ptr thrown;
+    try {
+      map();
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    const std::lock_guard lock(guard);
+    error = thrown;
+    has_ended = true;
+    ended.notify_all();
   }
 
   void map() {
-    try {
-      const ThreadLimit limit(threads);
-      MapSummary summary = map_live(source, job, {});
-      source.finish_recording();
-      const LiveFigures counts = source.figures();
-      summary.append(counts);
-      nlohmann::ordered_json json = to_json(summary);
-      json["live"] = to_json(counts);
-      figures = map_figures(
-          summary, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-    } catch (...) {
-      error = std::current_exception();
-    }
-    has_ended = true;
+    const ThreadLimit limit(threads);
+    MapSummary summary = map_live(source, job, {});
+    source.finish_recording();
+    const LiveFigures counts = source.figures();
+    summary.append(counts);
+    nlohmann::ordered_json json = to_json(summary);
+    json["live"] = to_json(counts);
+    // A note may quote a name in any encoding.
+    using Json = nlohmann::ordered_json;
+    figures = map_figures(summary, json.dump(2, ' ', false, Json::error_handler_t::replace));
+  }
+
+  /// What has ended the map early; null: nothing so far.
+  std::exception_ptr failure() const {
+    const std::lock_guard lock(guard);
+    return error;
   }
 
   /// Of the source, unless the map has ended with an error.
   LiveSource& open_source() {
-    if (has_ended && error) std::rethrow_exception(error);
+    if (const std::exception_ptr thrown = failure()) std::rethrow_exception(thrown);
     return source;
   }
 
@@ -78,10 +97,13 @@ struct LiveMapper::Content {
   MapJob job;
   int threads;
   std::stop_source stop;
-  std::atomic<bool> has_ended = false;
-  // Of the thread until it has ended.
+  MapFigures figures;  // of the thread until it has ended
+
+  mutable std::mutex guard;  // of all below
+  std::condition_variable ended;
+  bool has_ended = false;
   std::exception_ptr error;
-  MapFigures figures;
+
   std::jthread mapping;  // last: it uses the others
 };
 
@@ -89,11 +111,18 @@ LiveMapper::LiveMapper(std::string_view drive_toml, const std::filesystem::path&
                        const LiveMapperOptions& options) {
   CommandFiles files;
   files.outputs = {{output.string(), ContentKind::kMap, options.force || options.resume}};
+  files.folder = {options.record.string(), FolderUse::kReplace};
   check_files(files);
+  if (options.on_pose && map_settings_of(options.settings).is_paper()) {
+    throw ConfigError("the paper's method gives no poses before the map has their frames",
+                      "on_pose", "leave it out, or choose another preset");
+  }
   content_ = std::make_unique<Content>(drive_toml, output, options);
 }
 
-LiveMapper::~LiveMapper() {
+LiveMapper::~LiveMapper() { stop(); }
+
+void LiveMapper::stop() {
   content_->stop.request_stop();
   content_->source.close();
 }
@@ -138,9 +167,20 @@ void LiveMapper::add_wheel_speed(TimeNs stamp, double speed) {
 
 std::string LiveMapper::missing() const { return content_->source.missing(); }
 
+std::map<std::string, std::size_t> LiveMapper::figures() const {
+  return to_json(content_->source.figures()).get<std::map<std::string, std::size_t>>();
+}
+
+bool LiveMapper::close_within(std::chrono::milliseconds time) {
+  content_->source.close();
+  std::unique_lock lock(content_->guard);
+  return content_->ended.wait_for(lock, time, [&] { return content_->has_ended; });
+}
+
 MapFigures LiveMapper::close() {
   content_->source.close();
-  if (content_->mapping.joinable()) content_->mapping.join();
+  std::unique_lock lock(content_->guard);
+  content_->ended.wait(lock, [&] { return content_->has_ended; });
   if (content_->error) std::rethrow_exception(content_->error);
   return content_->figures;
 }

@@ -9,11 +9,6 @@
 
 namespace fovea {
 
-MappedFrame mapped_frame(const FrameRecord& record) {
-  return {record.index, record.stamp,         record.status,
-          record.note,  record.T_local_lidar, record.figures};
-}
-
 struct Map::Content {
   MapReader reader;
   ColorDisplay display;
@@ -31,13 +26,7 @@ std::size_t Map::size() const { return content_->reader.size(); }
 std::map<std::string, std::string> Map::meta() const { return content_->reader.meta(); }
 std::string Map::digest() const { return content_->reader.digest(); }
 
-std::vector<MappedFrame> Map::frames() const {
-  std::vector<MappedFrame> frames;
-  for (const FrameRecord& record : content_->reader.frames()) {
-    frames.push_back(mapped_frame(record));
-  }
-  return frames;
-}
+std::vector<MappedFrame> Map::frames() const { return mapped_frames(content_->reader.frames()); }
 
 PointCloud Map::points(const PointQuery& query) const {
   return find_points(content_->reader, query);

@@ -39,7 +39,7 @@ MapFigures map_figures(const MapSummary& summary, std::string json) {
 MapFigures map_drive(const Drive& drive, const std::filesystem::path& output,
                      const MapOptions& options,
                      const std::function<void(const MapProgress&)>& progress) {
-  check_files({{drive.folder().string()},
+  check_files({{drive.content()->folder.string()},
                {{output.string(), ContentKind::kMap, options.force || options.resume}}});
   MapJob job;
   job.output = output;
