@@ -1,6 +1,7 @@
 // Maps of format 6. tests/data/format_6.fovea is the map of a simulated drive of four frames, one
 // of them held out and one missing. The expected values are those that the program printed and
-// exported which wrote it.
+// exported which wrote it. It did not export intensities: these are as the present program has
+// them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,10 +16,13 @@ namespace fovea::format_6_test {
 
 using ::testing::HasSubstr;
 
-/// FNV-1a, 64 bits.
+/// FNV-1a, 64 bits, of a file but for the line that names the version of the program.
 std::uint64_t hash_of(const std::filesystem::path& path) {
+  std::string text = read_text(path);
+  const std::size_t begin = text.find("comment fovea ");
+  if (begin != std::string::npos) text.erase(begin, text.find('\n', begin) + 1 - begin);
   std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : read_text(path)) {
+  for (const char c : text) {
     hash ^= static_cast<unsigned char>(c);
     hash *= 0x100000001b3;
   }
@@ -37,7 +41,7 @@ class Format6 : public testing::Test {
   void expect_points_and_poses(const std::filesystem::path& map) const {
     const auto points = folder_ / "points.ply", poses = folder_ / "poses.txt";
     EXPECT_EQ(run("export", map, "'" + points.string() + "' --force").exit_code, 0);
-    EXPECT_EQ(hash_of(points), 0x1d983b247ca2a910u);
+    EXPECT_EQ(hash_of(points), 0x359d874ab4c707adu);
     EXPECT_EQ(run("export", map, "'" + poses.string() + "' --force --format kitti-poses").exit_code,
               0);
     EXPECT_EQ(hash_of(poses), 0x6adbe37e170737fcu);
