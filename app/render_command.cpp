@@ -3,38 +3,23 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
-#include <cstdlib>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/html_report/viewpoint.h"
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/render_drive.h"
 #include "app/render_views.h"
 #include "fovea/city/city.h"
-#include "fovea/core/angle.h"
 #include "fovea/core/output_file.h"
-#include "fovea/core/stable_order.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/writers/png_encode.h"
 #include "fovea/errors.h"
-#include "fovea/evaluation/drive_in_city.h"
-#include "fovea/evaluation/evaluate_uncolored.h"
-#include "fovea/evaluation/predicted_light.h"
-#include "fovea/evaluation/scored_city.h"
-#include "fovea/evaluation/scored_map.h"
+#include "fovea/evaluation/map_picture.h"
 #include "fovea/geometry/lidar_data_sheet.h"
-#include "fovea/map/meta_keys.h"
-#include "fovea/pipeline/stored_calibration.h"
-#include "fovea/rendering/splat.h"
 
 namespace fovea::app {
 namespace {
@@ -48,114 +33,6 @@ struct RenderArguments {
   int frame = -1, width = 1280, height = 720;
   bool force = false, foreign = false;
 };
-
-constexpr std::array kViews{Viewpoint{"driver", 0, 0, 4 * kDegree, 80 * kDegree},
-                            Viewpoint{"behind", 9, 5, 20 * kDegree, 75 * kDegree},
-                            Viewpoint{"above", -6, 28, 88 * kDegree, 70 * kDegree}};
-
-/// The frame asked for, or the middle one.
-const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string& path) {
-  if (map.frames.empty()) {
-    throw InputError("the map has no frames", path, "map a drive first");
-  }
-  if (index < 0) return map.frames[map.frames.size() / 2];
-  for (const FrameRecord& frame : map.frames) {
-    if (frame.index == index) return frame;
-  }
-  throw InputError(
-      fmt::format("frame {} is not in the map", index), path,
-      fmt::format("give --frame {} to {}", map.frames.front().index, map.frames.back().index));
-}
-
-/// As exposed as the image of a frame, by the gain of the frame or of its neighbors.
-ColorDisplay exposure_of(const FrameRecord& frame, int camera,
-                         const std::vector<FrameRecord>& frames) {
-  const ViewRecord* view = frame.find_view(camera);
-  if (view != nullptr && view->log2_gain) return {view->light(), /*tone_mapped=*/false};
-  const auto light = predicted_light(frames, frame.index, camera);
-  return light ? ColorDisplay(*light, /*tone_mapped=*/false) : ColorDisplay();
-}
-
-SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam,
-               const ColorDisplay& display) {
-  const ColoredPoints points =
-      has_colors(map) ? colored_points(map.points_local) : all_points(map.points_local);
-  SplatOptions options;
-  options.max_radius = 20;
-  options.display = display;
-  return splat(points, spacing_of(points, map.meta), camera, T_local_cam.inverse(), options);
-}
-
-/// A frame of the map with its scan and image.
-using RecordedFrame = std::pair<FrameRecord, Frame>;
-
-/// The frame asked for, or the one next to the middle that can be read.
-RecordedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
-                         const FrameSource& drive) {
-  std::vector<FrameRecord> records = {find_frame(map, arguments.frame, arguments.map)};
-  if (arguments.frame < 0) {
-    const int middle = records.front().index;
-    records = map.frames;
-    sort_stably(records, [&](const FrameRecord& a, const FrameRecord& b) {
-      return std::abs(a.index - middle) < std::abs(b.index - middle);
-    });
-  }
-  std::optional<SkippedFrame> first;
-  for (FrameRecord& record : records) {
-    LoadedFrame loaded = drive.load(record.index);
-    if (auto* frame = std::get_if<Frame>(&loaded)) return {std::move(record), std::move(*frame)};
-    if (!first) first = std::get<SkippedFrame>(loaded);
-  }
-  throw InputError(fmt::format("frame {} cannot be read ({})", first->index, first->detail),
-                   arguments.drive, "choose another --frame");
-}
-
-/// The map as one of the drive's cameras sees it, above the photograph that it took.
-/// @param map  with the frames of the drive
-Image above_photograph(const RenderArguments& arguments, const ScoredMap& map,
-                       std::unique_ptr<FrameSource> drive) {
-  if (has_stored_calibration(map.meta)) {
-    drive = with_stored_calibration(std::move(drive), map.meta, arguments.map);
-  }
-  require_cameras(drive->info(), "a picture beside a photograph");
-  const auto [frame, loaded] = load_frame(arguments, map, *drive);
-  const Camera camera = drive->info().camera_at(0, frame.index).at_image(frame.motion);
-  const Image& photograph = loaded.images.at(0);
-  const SplatView drawn = draw(map, camera, frame.T_local_lidar * camera.T_cam_lidar.inverse(),
-                               arguments.exposure.empty()
-                                   ? exposure_of(frame, camera.index, map.frames)
-                                   : color_display(parse_exposure(arguments.exposure), map.frames));
-  Image both(camera.width, 2 * camera.height, 3);
-  for (int v = 0; v < camera.height; ++v) {
-    for (int u = 0; u < camera.width; ++u) {
-      for (int c = 0; c < 3; ++c) {
-        both.pixel(u, v)[c] = drawn.image.pixel(u, v)[c];
-        both.pixel(u, camera.height + v)[c] =
-            photograph.pixel(u, v)[photograph.channels == 3 ? c : 0];
-      }
-    }
-  }
-  return both;
-}
-
-Image from_view(const RenderArguments& arguments, const ScoredMap& map) {
-  const auto placed = [&]() -> PlacedCamera {
-    if (!arguments.from.empty())
-      return free_camera(arguments.from, arguments.to, arguments.width, arguments.height);
-    if (arguments.view == "map")
-      return above_map(map.points_local, arguments.width, arguments.height);
-    const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
-    const Viewpoint& view = *std::find_if(
-        kViews.begin(), kViews.end(), [&](const Viewpoint& v) { return v.name == arguments.view; });
-    return {viewpoint_camera(view, arguments.width, arguments.height),
-            viewpoint_pose(view, frame.T_local_lidar)};
-  }();
-  return draw(
-             map, placed.camera, placed.T_local_cam,
-             color_display(parse_exposure(arguments.exposure.empty() ? "auto" : arguments.exposure),
-                           map.frames))
-      .image;
-}
 
 /// What would otherwise be ignored without a word.
 void check_options(const CLI::App& command, const RenderArguments& arguments) {
@@ -185,29 +62,35 @@ CommandFiles files_of(const RenderArguments& arguments) {
   return files;
 }
 
-Image picture_of_map(const RenderArguments& arguments) {
-  const MapReader reader = open_map(arguments.map);
-  ScoredMap map = load_scored_map(reader);
-  if (arguments.drive.empty()) return from_view(arguments, map);
-  auto drive = DriveArguments{arguments.drive, "", arguments.camera, {}}.open();
-  const auto match =
-      find_drive_in_map(reader, arguments.map, *drive, arguments.foreign, /*quiet=*/true);
-  if (match) choose_frames(match->number_in_drive, map);
-  return above_photograph(arguments, map, std::move(drive));
+PictureOptions options_of(const RenderArguments& arguments) {
+  PictureOptions options;
+  options.view = arguments.view;
+  if (!arguments.from.empty()) options.free_view = parse_free_view(arguments.from, arguments.to);
+  options.frame = arguments.frame;
+  options.width = arguments.width;
+  options.height = arguments.height;
+  options.exposure = arguments.exposure;
+  return options;
 }
 
-/// Only the tiles around the drive are read.
-Image picture_of_city(const RenderArguments& arguments) {
-  const City city = open_city(arguments.map);
-  auto drive = DriveArguments{arguments.drive, "", arguments.camera, {}}.open();
-  const ScoredMap map = load_scored_city(city, find_drive_in_city(city, *drive, arguments.foreign));
-  return above_photograph(arguments, map, std::move(drive));
+Image picture_of(const RenderArguments& arguments) {
+  const PictureOptions options = options_of(arguments);
+  const auto drive = [&] {
+    auto source = DriveArguments{arguments.drive, "", arguments.camera, {}}.open();
+    return PhotographedDrive{std::move(source), arguments.drive, arguments.foreign};
+  };
+  if (is_city(arguments.map)) {
+    const City city = open_city(arguments.map);
+    return draw_above_photograph(city, arguments.map, drive(), options);
+  }
+  const MapReader reader = open_map(arguments.map);
+  if (arguments.drive.empty()) return draw_map(reader, arguments.map, options);
+  return draw_above_photograph(reader, arguments.map, drive(), options);
 }
 
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
-  const std::vector<std::uint8_t> png =
-      encode_png(is_city(arguments.map) ? picture_of_city(arguments) : picture_of_map(arguments));
+  const std::vector<std::uint8_t> png = encode_png(picture_of(arguments));
   output.stream().write(reinterpret_cast<const char*>(png.data()),
                         static_cast<std::streamsize>(png.size()));
   output.commit();

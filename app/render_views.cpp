@@ -1,12 +1,7 @@
 #include "app/render_views.h"
 
 #include <CLI/Error.hpp>
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <sstream>
-
-#include "app/html_report/viewpoint.h"
-#include "fovea/core/angle.h"
 
 namespace fovea::app {
 namespace {
@@ -25,27 +20,10 @@ Eigen::Vector3d parse_place(const std::string& text, const char* option) {
 
 }  // namespace
 
-PlacedCamera free_camera(const std::string& from_text, const std::string& to_text, int width,
-                         int height) {
-  const Eigen::Vector3d from = parse_place(from_text, "--from");
-  const Eigen::Vector3d to = parse_place(to_text, "--to");
-  if (from == to) throw CLI::ValidationError("--to", "another place than --from");
-  const Viewpoint view{"free", 0, 0, 0, 75 * kDegree};
-  return {viewpoint_camera(view, width, height), pose_looking_at(from, to)};
-}
-
-PlacedCamera above_map(const PointCloud& points, int width, int height) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3f& p : points.position) box.extend(points.origin + p.cast<double>());
-  const Viewpoint view{"map", 0, 0, 0, 20 * kDegree};  // narrow: nearly without perspective
-  const Camera camera = viewpoint_camera(view, width, height);
-  const Eigen::Vector3d size = box.sizes();
-  const double distance = camera.fx * std::max(size.x() / width, size.y() / height);
-  constexpr double kMargin = 1.02;
-  const Eigen::Vector3d middle = box.center();
-  const Eigen::Vector3d eye(middle.x(), middle.y(),
-                            box.max().z() + std::max(1.0, kMargin * distance));
-  return {camera, pose_looking_at(eye, middle)};
+FreeView parse_free_view(const std::string& from_text, const std::string& to_text) {
+  const FreeView view{parse_place(from_text, "--from"), parse_place(to_text, "--to")};
+  if (view.from == view.to) throw CLI::ValidationError("--to", "another place than --from");
+  return view;
 }
 
 }  // namespace fovea::app

@@ -6,12 +6,12 @@
 #include <array>
 
 #include "app/html_report/markup.h"
-#include "app/html_report/viewpoint.h"
 #include "fovea/core/angle.h"
 #include "fovea/foveal_region.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/rendering/splat.h"
+#include "fovea/rendering/viewpoint.h"
 #include "fovea/surface_samples.h"
 #include "fovea/texture.h"
 #include "fovea/upsample.h"

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "app/html_report/markup.h"
-#include "app/html_report/viewpoint.h"
 #include "fovea/core/angle.h"
+#include "fovea/rendering/viewpoint.h"
 
 namespace fovea::app {
 

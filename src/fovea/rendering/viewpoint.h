@@ -3,7 +3,7 @@
 
 #include "fovea/camera.h"
 
-namespace fovea::app {
+namespace fovea {
 
 /// Where a picture is taken from, seen from the LiDAR's place with z up.
 struct Viewpoint {
@@ -25,4 +25,4 @@ RigidMotion viewpoint_pose(const Viewpoint& view, const RigidMotion& T_local_lid
 /// top of the picture is north (y of the local frame).
 RigidMotion pose_looking_at(const Eigen::Vector3d& from_local, const Eigen::Vector3d& to_local);
 
-}  // namespace fovea::app
+}  // namespace fovea

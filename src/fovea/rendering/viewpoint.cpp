@@ -1,8 +1,8 @@
-#include "app/html_report/viewpoint.h"
+#include "fovea/rendering/viewpoint.h"
 
 #include <cmath>
 
-namespace fovea::app {
+namespace fovea {
 
 Camera viewpoint_camera(const Viewpoint& view, int width, int height) {
   Camera camera;
@@ -40,4 +40,4 @@ RigidMotion pose_looking_at(const Eigen::Vector3d& from_local, const Eigen::Vect
   return T_local_cam;
 }
 
-}  // namespace fovea::app
+}  // namespace fovea
