@@ -3,18 +3,13 @@
 #include <fmt/format.h>
 
 #include "app/print.h"
-#include "fovea/errors.h"
+#include "fovea/map/checked_map.h"
 #include "fovea/map/meta_keys.h"
-#include "fovea/pipeline/config.h"
+#include "fovea/pipeline/settings_of_map.h"
 
 namespace fovea::app {
 
-MapReader open_map(const std::string& map) {
-  MapReader reader(map);
-  reader.check_structure();
-  reader.check_records();
-  return reader;
-}
+MapReader open_map(const std::string& map) { return open_checked_map(map); }
 
 std::vector<std::string> warnings_of_map(const MapMeta& meta) {
   const bool is_repaired = meta.contains(meta_key::kRepair);
@@ -29,14 +24,7 @@ std::vector<std::string> warnings_of_map(const MapMeta& meta) {
 }
 
 MapSettings stored_settings(const MapMeta& meta, const std::string& map) {
-  const auto stored = meta.find(meta_key::kConfig);
-  if (stored == meta.end()) {
-    throw meta.contains(meta_key::kRepair)
-        ? InputError("the map was repaired and has lost its settings", map, "map the drive again")
-        : InputError("the map does not tell its settings", map,
-                     "give a map that 'fovea map' wrote");
-  }
-  return fovea::stored_settings(stored->second, map);
+  return settings_of_map(meta, map);
 }
 
 void add_foreign_option(CLI::App& command, bool& foreign) {

@@ -12,14 +12,13 @@
 
 namespace fovea::app {
 
-/// Opens a map. InputError if its structure or any row but those of tiles is damaged; tiles are
-/// checked when they are read. So all commands accept and refuse the same maps.
+/// open_checked_map(), for all commands.
 MapReader open_map(const std::string& map);
 
 /// Warnings of a map that may lack parts: it was repaired, or is unfinished.
 std::vector<std::string> warnings_of_map(const MapMeta& meta);
 
-/// The settings that a map was made with; InputError if it does not tell them.
+/// settings_of_map().
 MapSettings stored_settings(const MapMeta& meta, const std::string& map);
 
 /// Adds the option --foreign.
