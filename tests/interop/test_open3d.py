@@ -8,7 +8,7 @@ import open3d
 
 import sample
 
-COLUMNS = ("frame", "range", "views", "spread", "reason", "interpolated")  # the PLY reader leaves out int8
+COLUMNS = ("frame", "range", "intensity", "views", "spread", "reason", "interpolated")  # the PLY reader leaves out int8
 
 
 class Open3dTest(unittest.TestCase):
