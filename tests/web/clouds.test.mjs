@@ -40,14 +40,16 @@ for (const [crs, tolerance] of [['local', 1e-5], ['ecef', 0.5]]) {
     const loader = new PLYLoader();
     loader.setCustomPropertyNameMapping({
       range: ['range'],
+      intensity: ['intensity'],
       provenance: ['camera', 'frame', 'interpolated', 'views', 'spread', 'reason'],
     });
     const geometry = loader.parse(bytesOf(map.export(`${crs}.ply`, '--crs', crs)));
     // It rounds light to 8 bits.
     checkGeometry(geometry, map.points, positionOf, tolerance, 0.51 / 255);
-    const { range, provenance } = geometry.attributes;
+    const { range, intensity, provenance } = geometry.attributes;
     map.points.forEach((point, i) => {
       assert.ok(Math.abs(range.array[i] - point.range) < 1e-6);
+      assert.ok(Math.abs(intensity.array[i] - point.intensity) < 1e-6);
       const read = Array.from(provenance.array.slice(6 * i, 6 * i + 6));
       const { camera, frame, interpolated, views, spread, reason } = point;
       assert.deepEqual(read, [camera, frame, interpolated, views, spread, reason]);
@@ -57,6 +59,10 @@ for (const [crs, tolerance] of [['local', 1e-5], ['ecef', 0.5]]) {
   test(`PCD in three.js, ${crs}`, () => {
     const cloud = new PCDLoader().parse(bytesOf(map.export(`${crs}.pcd`, '--crs', crs)));
     checkGeometry(cloud.geometry, map.points, positionOf, tolerance, 1e-6);
+    const { intensity } = cloud.geometry.attributes;
+    map.points.forEach((point, i) => {
+      assert.ok(Math.abs(intensity.array[i] - point.intensity) < 1e-6);
+    });
   });
 }
 
