@@ -10,20 +10,19 @@ from ._fovea import (
     Drive,
     DriveWriter,
     Frame,
-    FrameRecord,
     LiveMapper,
     LivePose,
     Localization,
     Localizer,
-    Map,
     Mapper,
-    Points,
     Progress,
-    ViewRecord,
     __version__,
     evaluate,
     map_drive,
 )
+from ._map import Map, Points, merge
+from ._meta import Meta, Origin
+from ._records import ExportedMap, FrameRecord, MergeFigures, ViewRecord
 from .errors import ConfigError, Error, InputError, OutputError
 
 __all__ = [
@@ -33,6 +32,7 @@ __all__ = [
     "Drive",
     "DriveWriter",
     "Error",
+    "ExportedMap",
     "Frame",
     "FrameRecord",
     "InputError",
@@ -42,6 +42,9 @@ __all__ = [
     "Localizer",
     "Map",
     "Mapper",
+    "MergeFigures",
+    "Meta",
+    "Origin",
     "OutputError",
     "Points",
     "Progress",
@@ -49,4 +52,5 @@ __all__ = [
     "__version__",
     "evaluate",
     "map_drive",
+    "merge",
 ]

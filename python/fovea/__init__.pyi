@@ -20,6 +20,15 @@ from typing import (
 import numpy as np
 import numpy.typing as npt
 
+from ._map import Map as Map
+from ._map import Points as Points
+from ._map import merge as merge
+from ._meta import Meta as Meta
+from ._meta import Origin as Origin
+from ._records import ExportedMap as ExportedMap
+from ._records import FrameRecord as FrameRecord
+from ._records import MergeFigures as MergeFigures
+from ._records import ViewRecord as ViewRecord
 from .errors import ConfigError as ConfigError
 from .errors import Error as Error
 from .errors import InputError as InputError
@@ -32,6 +41,7 @@ __all__ = [
     "Drive",
     "DriveWriter",
     "Error",
+    "ExportedMap",
     "Frame",
     "FrameRecord",
     "InputError",
@@ -41,6 +51,9 @@ __all__ = [
     "Localizer",
     "Map",
     "Mapper",
+    "MergeFigures",
+    "Meta",
+    "Origin",
     "OutputError",
     "Points",
     "Progress",
@@ -48,6 +61,7 @@ __all__ = [
     "__version__",
     "evaluate",
     "map_drive",
+    "merge",
 ]
 
 __version__: str
@@ -58,99 +72,6 @@ _Doubles = npt.NDArray[np.float64]
 _Bytes = npt.NDArray[np.uint8]
 _TileId = Tuple[int, int, int, int]  # submap, x, y, z
 _FrameRange = Tuple[Optional[int], Optional[int]]
-
-class Points:
-    """N points of a map as columns: read-only arrays without copies, which live on after this
-    object and the map."""
-
-    @property
-    def position(self) -> _Floats: ...
-    @property
-    def origin(self) -> _Doubles: ...
-    @property
-    def color(self) -> _Bytes: ...
-    @property
-    def camera(self) -> npt.NDArray[np.int8]: ...
-    @property
-    def frame(self) -> npt.NDArray[np.int32]: ...
-    @property
-    def range(self) -> _Floats: ...
-    @property
-    def incidence(self) -> _Floats: ...
-    @property
-    def interpolated(self) -> _Bytes: ...
-    @property
-    def views(self) -> _Bytes: ...
-    @property
-    def spread(self) -> _Bytes: ...
-    @property
-    def weight(self) -> npt.NDArray[np.uint16]: ...
-    @property
-    def reason(self) -> _Bytes: ...
-    @property
-    def intensity(self) -> Optional[_Floats]: ...
-    def __len__(self) -> int: ...
-
-class ViewRecord:
-    """The image of one camera in a frame."""
-
-    @property
-    def camera(self) -> int: ...
-    @property
-    def stamp(self) -> Optional[int]: ...
-    @property
-    def log2_gain(self) -> Optional[_Doubles]: ...
-
-class FrameRecord:
-    """What a map keeps of a frame of its drive."""
-
-    @property
-    def index(self) -> int: ...
-    @property
-    def stamp(self) -> Optional[int]: ...
-    @property
-    def status(self) -> str: ...
-    @property
-    def note(self) -> str: ...
-    @property
-    def T_local_lidar(self) -> _Doubles: ...
-    @property
-    def T_local_lidar_navigation(self) -> Optional[_Doubles]: ...
-    @property
-    def T_odom_lidar(self) -> _Doubles: ...
-    @property
-    def submap(self) -> int: ...
-    @property
-    def velocity(self) -> Optional[_Doubles]: ...
-    @property
-    def acceleration(self) -> Optional[_Doubles]: ...
-    @property
-    def views(self) -> List[ViewRecord]: ...
-    @property
-    def figures(self) -> Dict[str, float]: ...
-    @property
-    def milliseconds(self) -> Dict[str, float]: ...
-
-class Map:
-    """A map file, read as it is asked for."""
-
-    def __init__(self, path: _Path) -> None: ...
-    def __fspath__(self) -> str: ...
-    @property
-    def path(self) -> pathlib.Path: ...
-    @property
-    def meta(self) -> Dict[str, str]: ...
-    @property
-    def frames(self) -> List[FrameRecord]: ...
-    @property
-    def submaps(self) -> _Doubles: ...
-    @property
-    def size(self) -> int: ...
-    def tiles(self) -> Dict[_TileId, int]: ...
-    def tile(self, id: _TileId) -> Points: ...
-    def __iter__(self) -> Iterator[Tuple[_TileId, Points]]: ...
-    def points(self, where: str = "") -> Points: ...
-    def digest(self) -> str: ...
 
 class Camera:
     """A pinhole camera; pixel centres at integers."""

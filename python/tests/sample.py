@@ -6,6 +6,8 @@ import pathlib
 import subprocess
 import tempfile
 
+import numpy as np
+
 PROGRAM = os.environ["FOVEA_PROGRAM"]
 FRAMES = 6
 HELD_OUT = 2
@@ -44,3 +46,15 @@ def map_file() -> pathlib.Path:
     settings = [word for key, value in SETTINGS.items() for word in ("--set", f"{key}={value}")]
     run("map", drive(), "-o", output, "--quiet", "--hold-out", HOLD_OUT, *settings)
     return output
+
+
+def open_files() -> set:
+    """Names of the files that this process has open."""
+    links = pathlib.Path("/proc/self/fd").iterdir()
+    return {os.readlink(link) for link in links if link.is_symlink()}
+
+
+def expect_same_points(points, table) -> None:
+    """AssertionError unless the columns are the fields of a table; unknown numbers are equal."""
+    for name in table.dtype.names:
+        np.testing.assert_array_equal(getattr(points, name), table[name], name)
