@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <tuple>
 
 #include "fovea/api/drive_content.h"
@@ -62,6 +63,16 @@ class FrameIterator {
   int next_ = 0, end_ = 0;
 };
 
+py::str text_of(const Drive& drive) {
+  const auto [begin, end] = range_of(drive);
+  std::string numbers;
+  for (const Camera& camera : drive.cameras()) {
+    numbers += (numbers.empty() ? "" : ", ") + std::to_string(camera.index);
+  }
+  return py::str("<fovea.Drive {!r}, {}, frames {} to {}, cameras [{}]>")
+      .format(name_object(drive.folder()), drive.kind(), begin, end - 1, numbers);
+}
+
 }  // namespace
 
 DriveOptions drive_options(const std::vector<int>& cameras, const FrameRange& frames) {
@@ -98,8 +109,24 @@ void bind_drive(py::module_& module) {
       .def_property_readonly(
           "notes", [](const Drive& drive) { return drive.notes(); }, "What a user must be told.")
       .def("load", &load, py::arg("index"),
-           "A frame. IndexError beyond the range; InputError if it cannot be "
-           "used.")
+           "A frame. IndexError beyond the range; InputError if it cannot be used.")
+      .def("__getitem__", &load, py::arg("index"),
+           "The frame of that number, as load(). Numbers are those of `frames`: not places, and "
+           "not below 0.")
+      .def(
+          "__len__",
+          [](const Drive& drive) {
+            const auto [begin, end] = range_of(drive);
+            return static_cast<std::size_t>(std::max(0, end - begin));
+          },
+          "Number of `frames`.")
+      .def_property_readonly(
+          "sweep", [](const Drive& drive) { return drive.sweep(); },
+          "SweepTiming of scans whose points have no times.")
+      .def_property_readonly(
+          "is_compensated", [](const Drive& drive) { return drive.is_compensated(); },
+          "Whether the motion was undone in the scans already.")
+      .def("__repr__", &text_of)
       .def("__iter__", [](const Drive& drive) { return FrameIterator(drive); });
 }
 

@@ -2,6 +2,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <variant>
+
 #include "fovea/errors.h"
 #include "fovea/mapper.h"
 #include "python/bindings/bindings.h"
@@ -14,7 +16,20 @@ namespace fovea::python {
 namespace py = pybind11;
 namespace {
 
-py::object map_in_python(const std::filesystem::path& drive, const std::filesystem::path& output,
+std::variant<Drive, std::filesystem::path> drive_or_folder(const py::object& drive) {
+  if (py::isinstance<Drive>(drive)) return drive.cast<const Drive&>();
+  return py::module_::import("os").attr("fspath")(drive).cast<std::filesystem::path>();
+}
+
+/// A Drive as it is, unless cameras or frames are chosen. Otherwise its folder is opened.
+Drive opened(const std::variant<Drive, std::filesystem::path>& drive, const DriveOptions& options) {
+  const auto* const open = std::get_if<Drive>(&drive);
+  if (open == nullptr) return Drive(std::get<std::filesystem::path>(drive), options);
+  const bool is_chosen = !options.cameras.empty() || options.begin || options.end;
+  return is_chosen ? Drive(open->folder(), options) : *open;
+}
+
+py::object map_in_python(const py::object& drive, const std::filesystem::path& output,
                          const std::string& preset, const py::dict& settings,
                          const std::string& hold_out, const FrameRange& frames,
                          const std::vector<int>& cameras, int threads, bool calibrate, bool resume,
@@ -32,12 +47,13 @@ py::object map_in_python(const std::filesystem::path& drive, const std::filesyst
       if (!callback.is_none()) callback(now);
     });
   };
+  const auto source = drive_or_folder(drive);
   std::string summary, error;
   {
     const py::gil_scoped_release others_run;
     try {
-      const Drive opened(drive, drive_options(cameras, frames));
-      summary = map_drive(opened, output, options, progress).json;
+      summary =
+          map_drive(opened(source, drive_options(cameras, frames)), output, options, progress).json;
     } catch (const Error& thrown) {
       if (!watch.has_raised()) throw;
       error = thrown.what();
@@ -63,13 +79,11 @@ void bind_map_drive(py::module_& module) {
              py::arg("calibrate") = false, py::arg("resume") = false, py::arg("force") = false,
              py::arg("callback") = py::none(),
              "Maps a drive into a map file, as `fovea map` does.\n\n"
-             "callback(progress) is called after each frame, in order. What it "
-             "raises, or Ctrl-C, "
-             "ends the run after the frames at hand: what was mapped is in the file, "
-             "which "
+             "drive: a folder, or a Drive with its cameras and frames.\n\n"
+             "callback(progress) is called after each frame, in order. What it raises, or Ctrl-C, "
+             "ends the run after the frames at hand: what was mapped is in the file, which "
              "resume=True goes on with.\n\n"
-             "OutputError if the output is an input, a file of another kind or no "
-             "ordinary file, "
+             "OutputError if the output is an input, a file of another kind or no ordinary file, "
              "also with force=True (docs/outputs.md).\n\n"
              "Returns the figures that `fovea map --report` writes, as a dict.");
 }

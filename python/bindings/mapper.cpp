@@ -40,8 +40,7 @@ std::map<TileTuple, Points> mapper_tiles(const FrameMapper::Content& content) {
 /// A mapper that Python's threads take turns with.
 class PythonMapper {
  public:
-  PythonMapper(const Drive& drive, const std::string& preset, const py::dict& settings)
-      : mapper_(drive, mapper_settings(preset, settings)) {}
+  PythonMapper(const Drive& drive, const MapperSettings& settings) : mapper_(drive, settings) {}
 
   MappedFrame process(const FrameOfDrive& frame, bool held_out) {
     const py::gil_scoped_release others_run;
@@ -61,21 +60,25 @@ class PythonMapper {
   mutable std::mutex mutex_;
 };
 
+std::unique_ptr<PythonMapper> make_frame_mapper(const Drive& drive, const std::string& preset,
+                                                const py::dict& settings) {
+  const MapperSettings options = mapper_settings(preset, settings);
+  const py::gil_scoped_release others_run;
+  return std::make_unique<PythonMapper>(drive, options);
+}
+
 }  // namespace
 
 void bind_mapper(py::module_& module) {
   py::class_<PythonMapper>(module, "Mapper",
                            "Maps a drive frame by frame, all in memory; map_drive() makes files.")
-      .def(py::init<const Drive&, const std::string&, const py::dict&>(), py::arg("drive"),
-           py::kw_only(), py::arg("preset") = "default", py::arg("settings") = py::dict())
+      .def(py::init(&make_frame_mapper), py::arg("drive"), py::kw_only(),
+           py::arg("preset") = "default", py::arg("settings") = py::dict())
       .def("process", &PythonMapper::process, py::arg("frame"), py::kw_only(),
            py::arg("held_out") = false,
-           "Maps the drive's next frame and returns its record. A held-out one "
-           "gets a pose, and "
-           "adds nothing. Where navigation does not tell how the vehicle "
-           "moves, the first call "
-           "reads the drive's next frame, too. ValueError for a frame of "
-           "another drive or one that "
+           "Maps the drive's next frame and returns its record. A held-out one gets a pose, and "
+           "adds nothing. Where navigation does not tell how the vehicle moves, the first call "
+           "reads the drive's next frame, too. ValueError for a frame of another drive or one that "
            "is not later.")
       .def_property_readonly(
           "size",
@@ -89,8 +92,7 @@ void bind_mapper(py::module_& module) {
           "T_local_submap as of the last frame, N x 4 x 4.")
       .def(
           "tiles", [](const PythonMapper& self) { return self.look(&mapper_tiles); },
-          "The points so far by (submap, x, y, z), in the frames of their "
-          "submaps: not copied, and "
+          "The points so far by (submap, x, y, z), in the frames of their submaps: not copied, and "
           "not changed by later frames.");
 }
 

@@ -14,6 +14,7 @@ PYBIND11_MODULE(_fovea, module) {
   bind_points(module);
   bind_map(module);
   bind_map_output(module);
+  bind_motion(module);
   bind_drive(module);
   bind_drive_writer(module);
   bind_map_drive(module);

@@ -20,8 +20,8 @@ def send_scans_and_images() -> None:
     for frame in robot:
         wait_until(frame.stamp)
         mapper.add_scan(frame.stamp, frame.points, intensity=frame.intensity, times=frame.time)
-        if frame.images[0] is not None:
-            mapper.add_image("camera_2", frame.stamp, frame.images[0])
+        if 2 in frame.images:
+            mapper.add_image("camera_2", frame.stamp, frame.images[2])
 
 
 def send_positions() -> None:

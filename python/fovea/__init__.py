@@ -4,25 +4,30 @@ Poses are 4x4 matrices T_to_from, lengths metres, angles radians, times int nano
 docs/python.md has examples.
 """
 from . import _processor  # first of all: the compiled module may not run here
-from ._fovea import (
+from ._drive import (
     Camera,
     CameraModel,
     Drive,
     DriveWriter,
     Frame,
+    SweepMotion,
+    SweepTiming,
+)
+from ._fovea import __version__
+from ._map import Map, Points, merge
+from ._meta import Meta, Origin
+from ._records import ExportedMap, FrameRecord, MergeFigures, ViewRecord
+from ._mapping import (
     LiveMapper,
     LivePose,
     Localization,
     Localizer,
     Mapper,
     Progress,
-    __version__,
     evaluate,
     map_drive,
 )
-from ._map import Map, Points, merge
-from ._meta import Meta, Origin
-from ._records import ExportedMap, FrameRecord, MergeFigures, ViewRecord
+from ._results import Images
 from .errors import ConfigError, Error, InputError, OutputError
 
 __all__ = [
@@ -35,6 +40,7 @@ __all__ = [
     "ExportedMap",
     "Frame",
     "FrameRecord",
+    "Images",
     "InputError",
     "LiveMapper",
     "LivePose",
@@ -48,6 +54,8 @@ __all__ = [
     "OutputError",
     "Points",
     "Progress",
+    "SweepMotion",
+    "SweepTiming",
     "ViewRecord",
     "__version__",
     "evaluate",

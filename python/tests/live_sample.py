@@ -45,7 +45,7 @@ def drive() -> pathlib.Path:
     with fovea.DriveWriter(path, cameras={CAMERA: model}) as writer:
         for frame, pose in zip(frames(), true_poses()):
             writer.add(frame.points, frame.stamp, intensity=frame.intensity, times=frame.time,
-                       images={CAMERA: frame.images[0]}, T_world_lidar=pose)
+                       images={CAMERA: frame.images[2]}, T_world_lidar=pose)
     return path
 
 
@@ -59,7 +59,7 @@ def sensors(mapper, begin=0, end=FRAMES):
 
     def send_images():
         for frame in sent:
-            mapper.add_image(CAMERA, frame.stamp, frame.images[0])
+            mapper.add_image(CAMERA, frame.stamp, frame.images[2])
 
     def send_poses():
         for frame, pose in zip(sent, true_poses()[begin:end]):
@@ -91,5 +91,5 @@ def feed_until_error(test, live, error):
             frame = frames()[number % FRAMES]
             stamp = frames()[0].stamp + number * 10 ** 8
             live.add_pose(stamp, np.eye(4))
-            live.add_image(CAMERA, stamp, frame.images[0])
+            live.add_image(CAMERA, stamp, frame.images[2])
             live.add_scan(stamp, frame.points, times=frame.time)

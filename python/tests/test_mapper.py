@@ -19,8 +19,8 @@ class DriveTest(unittest.TestCase):
         self.assertEqual((frame.points.dtype, frame.points.shape[1]), (np.float32, 3))
         self.assertEqual(frame.intensity.shape, frame.points.shape[:1])
         camera = drive.cameras[1]
-        self.assertEqual(frame.images[1].shape, (camera.height, camera.width, 3))
-        points, image = frame.points, frame.images[0]
+        self.assertEqual(frame.images[3].shape, (camera.height, camera.width, 3))
+        points, image = frame.points, frame.images[2]
         expected = points.copy(), image.copy()
         del frame, drive
         np.testing.assert_array_equal(points, expected[0])
