@@ -45,7 +45,8 @@ PixelGrid::PixelGrid(const Eigen::AlignedBox2d& bounds, double pixel)
   if (!size.fits()) {
     throw ConfigError(
         fmt::format("the picture would have {:.0f} x {:.0f} pixels", size.width, size.height),
-        "--pixel", fmt::format("choose {:g} m or more", smallest_pixel(bounds)));
+        "--pixel",
+        fmt::format("choose {:g} m or more, or fewer points with --where", smallest_pixel(bounds)));
   }
   width_ = static_cast<int>(size.width);
   height_ = static_cast<int>(size.height);
