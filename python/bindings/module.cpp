@@ -22,4 +22,7 @@ PYBIND11_MODULE(_fovea, module) {
   bind_evaluate(module);
   bind_localizer(module);
   bind_live_mapper(module);
+  bind_stages(module);
+  bind_registration(module);
+  bind_view(module);
 }

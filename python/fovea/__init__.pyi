@@ -44,7 +44,23 @@ from ._mapping import Mapper as Mapper
 from ._mapping import Progress as Progress
 from ._mapping import evaluate as evaluate
 from ._mapping import map_drive as map_drive
+from ._results import ColoredPoints as ColoredPoints
 from ._results import Images as Images
+from ._results import RayVerdict as RayVerdict
+from ._results import SurfaceSamples as SurfaceSamples
+from ._results import Upsampled as Upsampled
+from ._stages import FovealRegion as FovealRegion
+from ._stages import RegistrationResult as RegistrationResult
+from ._stages import color_points as color_points
+from ._stages import compensate_sweep as compensate_sweep
+from ._stages import foveal_points as foveal_points
+from ._stages import ray_filter as ray_filter
+from ._stages import register_scans as register_scans
+from ._stages import sample_surfaces as sample_surfaces
+from ._stages import segment_ground as segment_ground
+from ._stages import sensor_height as sensor_height
+from ._stages import upsample as upsample
+from ._stages import upsample_non_ground as upsample_non_ground
 from .errors import ConfigError as ConfigError
 from .errors import Error as Error
 from .errors import InputError as InputError
@@ -53,11 +69,13 @@ from .errors import OutputError as OutputError
 __all__ = [
     "Camera",
     "CameraModel",
+    "ColoredPoints",
     "ConfigError",
     "Drive",
     "DriveWriter",
     "Error",
     "ExportedMap",
+    "FovealRegion",
     "Frame",
     "FrameRecord",
     "Images",
@@ -74,13 +92,27 @@ __all__ = [
     "OutputError",
     "Points",
     "Progress",
+    "RayVerdict",
+    "RegistrationResult",
+    "SurfaceSamples",
     "SweepMotion",
     "SweepTiming",
+    "Upsampled",
     "ViewRecord",
     "__version__",
+    "color_points",
+    "compensate_sweep",
     "evaluate",
+    "foveal_points",
     "map_drive",
     "merge",
+    "ray_filter",
+    "register_scans",
+    "sample_surfaces",
+    "segment_ground",
+    "sensor_height",
+    "upsample",
+    "upsample_non_ground",
 ]
 
 __version__: str

@@ -58,6 +58,23 @@ class ExamplesTest(unittest.TestCase):
             apart = frame.T_local_lidar[:3, 3] - frame.T_local_lidar_navigation[:3, 3]
             self.assertLess(np.linalg.norm(apart), 1)
 
+    def test_register_scans(self):
+        self.expect(run_python(EXAMPLES / "register_scans.py", sample.drive(), 0, 1), "moved 0.",
+                    "pairs")
+
+    def test_paper_by_hand(self):
+        self.expect(run_python(EXAMPLES / "paper_by_hand.py", sample.drive(), 1),
+                    "in the foveal region", "mean color")
+
+    def test_color_cloud(self):
+        output = sample.folder() / "colored.txt"
+        self.expect(run_python(EXAMPLES / "color_cloud.py", sample.drive(), 1, output),
+                    "points have a color")
+        colored = np.loadtxt(output)
+        self.assertEqual(colored.shape[1], 6)
+        self.assertGreater(len(colored), 1000)
+        self.assertGreater(colored[:, 3:].std(), 5)
+
     def test_types(self):
         cache = sample.folder() / "mypy"
         self.expect(run_python("-m", "mypy", "--strict", "--cache-dir", cache,
