@@ -16,7 +16,6 @@ from ._drive import (
 from ._fovea import __version__
 from ._map import Map, Points, merge
 from ._meta import Meta, Origin
-from ._records import ExportedMap, FrameRecord, MergeFigures, ViewRecord
 from ._mapping import (
     LiveMapper,
     LivePose,
@@ -27,6 +26,7 @@ from ._mapping import (
     evaluate,
     map_drive,
 )
+from ._records import ExportedMap, FrameRecord, MergeFigures, ViewRecord
 from ._results import ColoredPoints, Images, RayVerdict, SurfaceSamples, Upsampled
 from ._stages import (
     FovealRegion,

@@ -2,24 +2,6 @@
 
 Poses are 4x4 matrices T_to_from, lengths metres, angles radians, times int nanoseconds.
 """
-import os
-import pathlib
-from typing import (
-    Any,
-    Callable,
-    Dict,
-    Iterator,
-    List,
-    Mapping,
-    Optional,
-    Sequence,
-    Tuple,
-    Union,
-)
-
-import numpy as np
-import numpy.typing as npt
-
 from ._drive import Camera as Camera
 from ._drive import CameraModel as CameraModel
 from ._drive import Drive as Drive
@@ -32,10 +14,6 @@ from ._map import Points as Points
 from ._map import merge as merge
 from ._meta import Meta as Meta
 from ._meta import Origin as Origin
-from ._records import ExportedMap as ExportedMap
-from ._records import FrameRecord as FrameRecord
-from ._records import MergeFigures as MergeFigures
-from ._records import ViewRecord as ViewRecord
 from ._mapping import LiveMapper as LiveMapper
 from ._mapping import LivePose as LivePose
 from ._mapping import Localization as Localization
@@ -44,6 +22,10 @@ from ._mapping import Mapper as Mapper
 from ._mapping import Progress as Progress
 from ._mapping import evaluate as evaluate
 from ._mapping import map_drive as map_drive
+from ._records import ExportedMap as ExportedMap
+from ._records import FrameRecord as FrameRecord
+from ._records import MergeFigures as MergeFigures
+from ._records import ViewRecord as ViewRecord
 from ._results import ColoredPoints as ColoredPoints
 from ._results import Images as Images
 from ._results import RayVerdict as RayVerdict
@@ -116,10 +98,3 @@ __all__ = [
 ]
 
 __version__: str
-
-_Path = Union[str, "os.PathLike[str]"]
-_Floats = npt.NDArray[np.float32]
-_Doubles = npt.NDArray[np.float64]
-_Bytes = npt.NDArray[np.uint8]
-_TileId = Tuple[int, int, int, int]  # submap, x, y, z
-_FrameRange = Tuple[Optional[int], Optional[int]]

@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ._drive import Drive, Frame
-from . import FrameRecord, Points
+from ._map import Points
+from ._records import FrameRecord
 
 __all__ = [
     "LiveMapper",
