@@ -38,6 +38,14 @@ class ExamplesTest(unittest.TestCase):
         self.expect(run_python(EXAMPLES / "read_map.py", sample.map_file()), "points from",
                     "mean colour")
 
+    def test_draw_map(self):
+        picture = sample.folder() / "top.ppm"
+        self.expect(run_python(EXAMPLES / "draw_map.py", sample.map_file(), picture), "points on")
+        kind, width, height, _ = picture.read_bytes().split(maxsplit=3)
+        self.assertEqual(kind, b"P6")
+        pixels = np.frombuffer(picture.read_bytes()[-int(width) * int(height) * 3:], np.uint8)
+        self.assertGreater(np.count_nonzero(pixels), 1000)
+
     def test_map_and_evaluate(self):
         self.expect(run_python(EXAMPLES / "map_and_evaluate.py", sample.drive(),
                                sample.folder() / "example.fovea"), "held-out", "TE")

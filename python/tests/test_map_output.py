@@ -79,7 +79,7 @@ class RenderTest(unittest.TestCase):
         drive = fovea.Drive(sample.drive())
         height = drive.cameras[0].height
         self.assertEqual(image.shape, (2 * height, drive.cameras[0].width, 3))
-        np.testing.assert_array_equal(image[height:], drive.load(1).images[0])
+        np.testing.assert_array_equal(image[height:], drive.load(1).images[2])
         with self.assertRaises(fovea.InputError):
             self.map.render(drive=sample.drive(), frame=sample.WITHOUT_SCAN)
 
