@@ -52,6 +52,14 @@ class MissingPackagesTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
 
 
+class NumpyTest(unittest.TestCase):
+    def test_another_numpy_than_the_module_reads_is_an_import_error(self):
+        done = run_python("-c", "import numpy; numpy.__version__ = '2.1.0'; import fovea")
+        if done.returncode == 0:
+            self.skipTest("this build reads NumPy 2")
+        self.assertIn("ImportError: this build of fovea needs NumPy 1, not 2.1.0", done.stdout)
+
+
 class ColumnsTest(unittest.TestCase):
     def test_columns_are_those_of_the_export(self):
         points = fovea.Map(sample.map_file()).points()
