@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # Makes a virtual environment with the packages of requirements.txt: environment.sh FOLDER
 # Exit code 77, with one line: the environment is not there, and PyPI cannot be reached.
-# The packages stay in FOLDER: a second call with the same requirements needs no network.
+# FOLDER/numpy_2 has NumPy 2, which only test_numpy.py uses. The packages stay in FOLDER: a second call with the same
+# requirements needs no network.
 set -euo pipefail
 folder=$1
 requirements=$(dirname "${BASH_SOURCE[0]}")/requirements.txt
 python=/usr/bin/python3 # that of the module
+numpy_2=numpy==2.4.6
 
 skip() { # REASON
   echo "interop: skipped, $1"
@@ -23,11 +25,13 @@ pypi_is_reachable() {
 
 download() {
   echo "interop: downloading the packages of tests/interop/requirements.txt"
-  pip download --only-binary :all: --no-deps --retries 2 --timeout 30 --dest "$folder/wheels" --requirement "$requirements"
+  pip download --only-binary :all: --no-deps --retries 2 --timeout 30 --dest "$folder/wheels" --requirement "$requirements" &&
+    pip download --only-binary :all: --no-deps --retries 2 --timeout 30 --dest "$folder/wheels" "$numpy_2"
 }
 
 install() {
-  pip install --no-index --find-links "$folder/wheels" --no-deps --requirement "$requirements"
+  pip install --no-index --find-links "$folder/wheels" --no-deps --requirement "$requirements" &&
+    pip install --no-index --find-links "$folder/wheels" --no-deps --upgrade --target "$folder/numpy_2" "$numpy_2"
 }
 
 if cmp --silent "$requirements" "$folder/installed.txt"; then exit 0; fi
