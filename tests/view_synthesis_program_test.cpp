@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/drive/writers/png_encode.h"
 #include "fovea/map/map_store.h"
 #include "fovea/simulation/simulate.h"
 #include "tests/half_size_street.h"
@@ -80,6 +81,28 @@ TEST_F(ViewSynthesisProgram, TheImagesOfTheDriveAreWritten) {
   }
   EXPECT_EQ(images, std::size_t{kFrames});
   EXPECT_EQ(read_text(path("colmap/sparse/0/test.txt")), "camera_2_0000000004.png\n");
+}
+
+TEST_F(ViewSynthesisProgram, MasksOfTheDriveAreWrittenForNerf) {
+  Image mask(620, 188, 1);
+  std::fill(mask.data.begin(), mask.data.end(), std::uint8_t{255});
+  std::fill(mask.pixel(0, 180), mask.pixel(0, 187) + 620, std::uint8_t{0});  // the hood
+  const std::vector<std::uint8_t> png = encode_png(mask);
+  std::ofstream(path("street/mask.png"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
+  std::string description = read_text(path("street/drive.toml"));
+  const std::string before = "index = 2\n";
+  ASSERT_NE(description.find(before), std::string::npos);
+  description.insert(description.find(before), "mask = \"mask.png\"\n");
+  std::ofstream(path("street/drive.toml")) << description;
+
+  const ProgramRun run = export_map("nerf", "masked", with_drive());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::json json = nlohmann::json::parse(read_text(path("masked/transforms.json")));
+  for (const nlohmann::json& frame : json["frames"]) {
+    EXPECT_EQ(frame["mask_path"], "masks/camera_2.png");
+  }
+  EXPECT_EQ(read_image(path("masked/masks/camera_2.png")).data, mask.data);
 }
 
 /// Half a pixel to the side, the colors of the points and of a held-out image differ more.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ class DriveOfMap {
   /// Whether a frame of the map is one of the drive.
   bool has(int frame) const { return match_.number_in_drive.contains(frame); }
   const std::vector<std::string>& notes() const { return match_.notes; }
+  /// Pixels that show no scene, by number of the camera.
+  const std::map<int, ImageMask>& masks() const { return drive_->info().masks; }
 
   /// Writes the images, undistorted and with three channels, as images/NAME.
   /// @return those that the drive has, with the size of the image

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
 
+#include "fovea/drive/writers/png_encode.h"
 #include "fovea/map/point_files/byte_packer.h"
 
 namespace fovea {
@@ -16,6 +18,12 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kPoints = "points.ply";
+
+constexpr const char* kMaskFolder = "masks";
+
+std::string mask_path(const Camera& camera) {
+  return fmt::format("{}/camera_{}.png", kMaskFolder, camera.index);
+}
 
 std::string file_path(const PosedImage& image) {
   return fmt::format("{}/{}", kImageFolder, image.file_name());
@@ -55,7 +63,7 @@ void put_splits(const std::vector<PosedImage>& images, OrderedJson& json) {
   json["test_filenames"] = test;
 }
 
-std::string transforms(const std::vector<PosedImage>& images) {
+std::string transforms(const std::vector<PosedImage>& images, bool has_masks) {
   OrderedJson json;
   json["camera_model"] = "PINHOLE";
   json["aabb_scale"] = 128;  // of instant-ngp: its largest
@@ -67,11 +75,36 @@ std::string transforms(const std::vector<PosedImage>& images) {
   for (const PosedImage& image : images) {
     OrderedJson frame;
     frame["file_path"] = file_path(image);
+    if (has_masks) frame["mask_path"] = mask_path(image.camera);
     if (!is_one_camera) put_camera(image.camera, frame);
     frame["transform_matrix"] = transform_matrix(image.T_cam_local);
     json["frames"].push_back(std::move(frame));
   }
   return json.dump(1) + "\n";
+}
+
+/// Black where the mask covers the scene. @param mask  nullptr: nowhere
+Image mask_picture(const Camera& camera, const ImageMask* mask) {
+  Image picture(camera.width, camera.height, 1);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const bool is_covered = mask != nullptr && mask->covers(float(u), float(v), 0);
+      picture.pixel(u, v)[0] = is_covered ? 0 : 255;
+    }
+  }
+  return picture;
+}
+
+/// Masks of all cameras if one has a mask: nerfstudio needs one for each image, or none.
+void write_masks(const ViewExport& views, const OutputFolder& folder) {
+  std::map<int, const Camera*> cameras;
+  for (const PosedImage& image : views.images) cameras[image.camera.index] = &image.camera;
+  for (const auto& [index, camera] : cameras) {
+    const auto mask = views.masks.find(index);
+    const std::vector<std::uint8_t> png =
+        encode_png(mask_picture(*camera, mask == views.masks.end() ? nullptr : &mask->second));
+    folder.write(mask_path(*camera), {reinterpret_cast<const char*>(png.data()), png.size()});
+  }
 }
 
 std::string points_ply(const std::vector<PointThinner::Point>& points) {
@@ -94,10 +127,12 @@ std::string points_ply(const std::vector<PointThinner::Point>& points) {
 
 ViewExportFigures write_nerf(const MapReader& map, const std::filesystem::path& map_path,
                              const std::filesystem::path& path, const ViewExportOptions& options) {
-  OutputFolder folder(path, options.force, {"transforms.json", kPoints, kImageFolder});
+  OutputFolder folder(path, options.force, {"transforms.json", kPoints, kImageFolder, kMaskFolder});
   const ViewExport views = gather_views(map, map_path, options, folder);
   folder.write(kPoints, points_ply(views.points));
-  folder.write("transforms.json", transforms(views.images));
+  const bool has_masks = !views.masks.empty();
+  if (has_masks) write_masks(views, folder);
+  folder.write("transforms.json", transforms(views.images, has_masks));
   folder.commit();
   return views.figures;
 }

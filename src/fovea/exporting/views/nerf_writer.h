@@ -10,6 +10,7 @@ namespace fovea {
 ///   z backward), and lists of the images to train and to test if frames are held out
 /// - points.ply: the points
 /// - images/: the images, with `options.drive`
+/// - masks/: what the images show of the scene, if the drive has masks
 /// OutputError if the folder exists and `options.force` is false, or if it cannot be written.
 /// @param map_path  of the map, for errors
 /// @throws InputError  as gather_views()

@@ -52,6 +52,7 @@ ViewExport gather_views(const MapReader& map, const std::filesystem::path& path,
     std::erase_if(images, [&](const PosedImage& image) { return !drive.has(image.frame); });
     views.images = drive.write_images(images, folder);
     views.figures.images_missing = images.size() - views.images.size();
+    views.masks = drive.masks();
     views.figures.notes = drive.notes();
   }
   require_sizes(views.images, path);

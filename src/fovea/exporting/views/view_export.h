@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct ViewExportFigures : ExportFigures {
 struct ViewExport {
   std::vector<PosedImage> images;
   std::vector<PointThinner::Point> points;
+  std::map<int, ImageMask> masks;  ///< of the drive, by number of the camera
   ViewExportFigures figures;
 };
 
