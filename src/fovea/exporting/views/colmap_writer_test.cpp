@@ -118,10 +118,10 @@ TEST_F(ColmapWriter, WhatTheMapLacksIsAnErrorAndNothingIsWritten) {
     view_test::write_map(folder_ / "a.fovea", cameras, states_cameras);
     try {
       write();
-    } catch (const InputError& error) {
+    } catch (const InputError& thrown) {
       EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
       EXPECT_FALSE(std::filesystem::exists(folder_ / "out.partial"));
-      return error.what();
+      return thrown.what();
     }
     return "written";
   };
