@@ -47,4 +47,18 @@ TEST_F(ExportTest, ChoosesTheSamePointsAsAMapThatIsRead) {
   EXPECT_GT(exported.filtered_out, 0u);
 }
 
+TEST_F(ExportTest, RefusesWhatAModelOfColmapCannotHave) {
+  const std::filesystem::path out = folder_ / "model";
+  EXPECT_THAT([&] { export_map(map(), out, {.format = "colmap", .crs = "utm"}); },
+              ThrowsMessage<ConfigError>(HasSubstr("local")));
+  EXPECT_THAT([&] { export_map(map(), out, {.format = "nerf", .max_points = 1}); },
+              ThrowsMessage<ConfigError>(HasSubstr("max_points")));
+  EXPECT_THAT([&] { export_map(map(), out, {.format = "nerf", .voxel = 0}); },
+              ThrowsMessage<ConfigError>(HasSubstr("voxel")));
+  // The sample states no cameras.
+  EXPECT_THAT([&] { export_map(map(), out, {.format = "colmap"}); },
+              ThrowsMessage<InputError>(HasSubstr("--drive")));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 }  // namespace fovea::api_export_test
