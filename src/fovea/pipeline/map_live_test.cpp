@@ -13,6 +13,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/drive/live/test_live_drive.h"
 #include "fovea/errors.h"
+#include "fovea/map/camera_models.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/live_state.h"
@@ -135,6 +136,12 @@ TEST_F(MapLive, TheMapIsThatOfTheDrive) {
     EXPECT_EQ(same.T_local_lidar.matrix(), frame.T_local_lidar.matrix()) << frame.index;
     EXPECT_EQ(same.figures, frame.figures) << frame.index;
   }
+  const std::vector<Camera> cameras = camera_models(live.meta(), 0),
+                            of_drive = camera_models(file.meta(), 0);
+  ASSERT_EQ(cameras.size(), 1u);
+  ASSERT_EQ(of_drive.size(), 1u);
+  EXPECT_EQ(cameras[0].fx, of_drive[0].fx);
+  EXPECT_EQ(cameras[0].T_cam_lidar.matrix(), of_drive[0].T_cam_lidar.matrix());
   const PointsOfMap a = points_in(file), b = points_in(live);
   EXPECT_EQ(a.tiles, b.tiles);
   EXPECT_EQ(a.position, b.position);
