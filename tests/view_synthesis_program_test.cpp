@@ -48,6 +48,8 @@ class ViewSynthesisProgram : public testing::Test {
   static inline std::unique_ptr<TemporaryFolder> scratch_;
 };
 
+namespace {
+
 /// Runs COLMAP with its output in a file; the exit code.
 int run_colmap(const std::string& arguments, const std::string& output) {
   const std::string command =
@@ -62,6 +64,8 @@ double number_after(const std::string& text, const std::string& label) {
   const auto at = text.find(label);
   return at == std::string::npos ? NAN : std::strtod(text.c_str() + at + label.size(), nullptr);
 }
+
+}  // namespace
 
 #define FOVEA_COLMAP_OR_SKIP()                                                                 \
   if (!has_colmap()) {                                                                         \
