@@ -42,7 +42,8 @@ struct LiveMapperOptions {
   bool force = false;               ///< replaces a map
   std::filesystem::path record = {};  ///< writes the accepted frames as a drive; empty: none
   int threads = 0;                    ///< 0: all that the machine has
-  std::function<void(const LivePose&)> on_pose;  ///< called in the tracker's thread; must be fast
+  /// Called in the tracker's thread; must be fast.
+  std::function<void(const LivePose&)> on_pose = {};
 };
 
 /// A position by GNSS.

@@ -57,6 +57,7 @@ TEST(ApiDrive, ReadsWhatItWrote) {
   ASSERT_EQ(drive.cameras().size(), 1u);
   EXPECT_EQ(drive.cameras()[0].width, 32);
   EXPECT_TRUE(drive.is_compensated());
+  EXPECT_EQ(drive.kind(), "generic");
   ASSERT_TRUE(drive.navigation().has_value());
   const DriveFrame frame = drive.load(2);
   EXPECT_EQ(frame.index(), 2);

@@ -79,6 +79,13 @@ TEST_F(MapTest, GivesFramesAndMeta) {
   EXPECT_EQ(frames[0].index, 7);
   EXPECT_EQ(frames[0].figures.at("points_scan"), 19329);
   EXPECT_STREQ(to_string(frames[2].status), "skipped");
+  const FrameRecord record = sample_frames()[0];
+  EXPECT_EQ(frames[0].milliseconds, record.milliseconds);
+  EXPECT_EQ(frames[0].motion, record.motion);
+  EXPECT_TRUE(frames[0].T_local_lidar_navigation->isApprox(*record.T_local_lidar_navigation));
+  ASSERT_EQ(frames[0].views.size(), 2u);
+  EXPECT_EQ(frames[0].views[1].camera, 3);
+  EXPECT_EQ(frames[0].views[1].stamp, record.views[1].stamp);
   EXPECT_EQ(map.meta().at("map.tile_size_m"), "4");
   EXPECT_EQ(map.digest(), MapReader(folder_ / "a.fovea").digest());
 }
