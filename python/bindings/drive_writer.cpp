@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 
@@ -41,6 +42,7 @@ std::variant<Image, std::filesystem::path> content_of(const py::object& image) {
   return image_from(image);
 }
 
+/// A writer that Python's threads take turns with.
 class PythonDriveWriter {
  public:
   PythonDriveWriter(const std::filesystem::path& path,
@@ -63,7 +65,8 @@ class PythonDriveWriter {
   void add_scan(const std::string& lidar, const Floats& points, TimeNs stamp,
                 const std::optional<Floats>& intensity, const std::optional<Floats>& times,
                 const std::optional<Rings>& rings) {
-    opened().add_scan(lidar, {stamp, cloud_from(points, intensity, times, rings)});
+    const DriveScan scan{stamp, cloud_from(points, intensity, times, rings)};
+    write([&](DriveWriter& writer) { writer.add_scan(lidar, scan); });
   }
 
   void add(const Floats& points, TimeNs stamp, const std::optional<Floats>& intensity,
@@ -83,12 +86,15 @@ class PythonDriveWriter {
     std::optional<RigidMotion> pose;
     if (T_world_lidar) pose = motion_from(*T_world_lidar);
     const DriveScan scan{stamp, cloud_from(points, intensity, times, rings)};
-    opened().add(scan, added, pose);
+    write([&](DriveWriter& writer) { writer.add(scan, added, pose); });
   }
 
   py::dict close() {
-    const WrittenDrive figures = opened().close();
-    writer_.reset();
+    WrittenDrive figures;
+    write([&](DriveWriter& writer) {
+      figures = writer.close();
+      writer_.reset();
+    });
     py::dict result;
     result["scans"] = figures.scans;
     result["images"] = figures.images;
@@ -96,16 +102,28 @@ class PythonDriveWriter {
     result["points_dropped"] = figures.points_dropped;
     return result;
   }
-  void discard() { writer_.reset(); }
-  bool is_open() const { return writer_.has_value(); }
+  void discard() {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard one_at_a_time(mutex_);
+    writer_.reset();
+  }
+  bool is_open() {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard one_at_a_time(mutex_);
+    return writer_.has_value();
+  }
 
  private:
-  DriveWriter& opened() {
+  template <class Write>
+  void write(Write&& write) {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard one_at_a_time(mutex_);
     if (!writer_) throw std::logic_error("the drive is closed");
-    return *writer_;
+    write(*writer_);
   }
 
   std::optional<DriveWriter> writer_;
+  std::mutex mutex_;
 };
 
 }  // namespace
