@@ -14,10 +14,13 @@ namespace fovea::python {
 namespace py = pybind11;
 namespace {
 
+constexpr double kMaxPixels = 1 << 27;  // stages make grids of the size of the image
+
 Camera make_pinhole(int width, int height, const Eigen::Matrix3d& K,
                     const std::optional<Doubles>& T_cam_lidar, int index) {
   require_range("width", width, 1, 65535);
   require_range("height", height, 1, 65535);
+  require_range("width x height", double(width) * height, 1, kMaxPixels);
   require_range("index", index, 0, 127);
   Camera camera{index, width, height, K(0, 0), K(1, 1), K(0, 2), K(1, 2)};
   Eigen::Matrix3d pinhole;

@@ -38,6 +38,7 @@ py::array compensate(const Floats& points, const SweepMotion& motion,
       throw std::invalid_argument("times need one number for each point");
     }
     cloud.time.assign(times->data(), times->data() + times->size());
+    for (const float t : cloud.time) require_range("a time", t, -3600, 3600);
   }
   {
     const py::gil_scoped_release others_run;

@@ -102,7 +102,7 @@ class CameraTest(unittest.TestCase):
         for K in np.eye(3) * np.nan, np.diag([0, 1, 1]), np.ones((3, 3)), np.diag([1, 1, 2]):
             with self.assertRaises(ValueError):
                 fovea.Camera(10, 10, K)
-        for size in (0, 10), (10, -1):
+        for size in (0, 10), (10, -1), (60000, 60000):
             with self.assertRaises(ValueError):
                 fovea.Camera(*size, np.eye(3))
         with self.assertRaises(ValueError):

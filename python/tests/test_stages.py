@@ -189,6 +189,7 @@ class WrongArguments(unittest.TestCase):
         points, image = wall(5), np.zeros((80, 100, 3), np.uint8)
         motion = fovea.SweepMotion(np.zeros(6))
         self.expect(fovea.compensate_sweep, points, motion, times=[0])
+        self.expect(fovea.compensate_sweep, points, motion, times=np.full(len(points), np.nan))
         self.expect(fovea.upsample_non_ground, points, [True], [CAMERA])
         self.expect(fovea.color_points, points, image[1:], CAMERA)
         self.expect(fovea.color_points, points, image.astype(float), CAMERA)
