@@ -7,6 +7,7 @@ import stat
 import subprocess
 import unittest
 
+import fovea
 import psutil
 
 import sample
@@ -90,6 +91,12 @@ class TownTest(CityTestCase):
         out, err = self.run_city("build", *self.drives[::-1], "-o", self.city, *SETTINGS)
         self.assertIn("everything is done", out)
         self.assertEqual((err, self.manifest()), ("", before))
+
+    def test_python_localizes_in_a_city(self):
+        self.expected()
+        drive = fovea.Drive(self.drives[0], frames=(0, 3), use_images=False)
+        localizer = fovea.Localizer(sample.folder() / "expected city", drive)
+        self.assertEqual([localizer.localize(frame).state for frame in drive], ["localized"] * 3)
 
     def test_a_killed_worker_of_two(self):
         expected = self.expected()

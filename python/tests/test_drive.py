@@ -1,4 +1,5 @@
 """fovea.Drive and fovea.Frame: frames by number, images by camera, poses by navigation."""
+import shutil
 import unittest
 import warnings
 
@@ -24,6 +25,16 @@ class Frames(unittest.TestCase):
     def test_that_cannot_be_used_are_an_error(self):
         with self.assertRaises(fovea.InputError):
             fovea.Drive(sample.drive())[sample.WITHOUT_SCAN]
+
+    def test_a_drive_that_has_vanished_ends_the_iteration(self):
+        path = sample.folder() / "vanishing"
+        shutil.copytree(sample.drive(), path)
+        drive = fovea.Drive(path, use_images=False)
+        shutil.rmtree(path)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with self.assertRaises(fovea.InputError):
+                list(drive)
 
     def test_have_a_readable_form(self):
         drive = fovea.Drive(sample.drive(), frames=(0, 2), cameras=[3, 2])
