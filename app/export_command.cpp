@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "app/number_checks.h"
 #include "fovea/city/city.h"
 #include "fovea/drive/command_files.h"
+#include "fovea/exporting/export_files.h"
 
 namespace fovea::app {
 namespace {
@@ -74,32 +74,14 @@ void check_options(const CLI::App& command, const ExportArguments& arguments,
 
 CommandFiles files_of(const ExportArguments& arguments, const std::string& format,
                       bool is_of_city) {
+  if (!is_of_city) {
+    return export_files({arguments.map, arguments.output, arguments.drive}, format,
+                        arguments.force);
+  }
   CommandFiles files;
   files.inputs = {arguments.map};
   if (!arguments.drive.empty()) files.inputs.push_back(arguments.drive);
-  if (is_of_city) {
-    files.folder = {arguments.output,
-                    arguments.root_only ? FolderUse::kAddTo : FolderUse::kReplace};
-    return files;
-  }
-  if (format == "orthophoto") {
-    const auto [picture, world_file, auxiliary] = orthophoto_files(arguments.output);
-    files.outputs = {{picture.string(), ContentKind::kPng, arguments.force},
-                     {world_file.string(), ContentKind::kWorldFile, arguments.force},
-                     {auxiliary.string(), ContentKind::kRasterAuxiliary, arguments.force}};
-    return files;
-  }
-  const std::map<std::string, ContentKind> kinds{
-      {"ply", ContentKind::kPly},           {"pcd", ContentKind::kPcd},
-      {"las", ContentKind::kLas},           {"glb", ContentKind::kGlb},
-      {"frames", ContentKind::kFrameTable}, {"kitti-poses", ContentKind::kPoses},
-      {"csv", ContentKind::kFrameTable},    {"tum", ContentKind::kTrajectory},
-      {"geojson", ContentKind::kGeoJson}};
-  if (const auto kind = kinds.find(format); kind != kinds.end()) {
-    files.outputs = {{arguments.output, kind->second, arguments.force}};
-  } else {
-    files.folder = {arguments.output};
-  }
+  files.folder = {arguments.output, arguments.root_only ? FolderUse::kAddTo : FolderUse::kReplace};
   return files;
 }
 

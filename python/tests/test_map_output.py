@@ -45,8 +45,19 @@ class ExportTest(unittest.TestCase):
             self.map.export(output)
         self.map.export(output, force=True)
 
+    def test_never_replaces_files_of_another_kind(self):
+        other = sample.folder() / "other"
+        other.write_text("mine")
+        for format in ["ply", "las", "glb", "tum"]:
+            with self.assertRaises(fovea.OutputError, msg=format):
+                self.map.export(other, format, force=True)
+        self.assertEqual(other.read_text(), "mine")
+
     def test_never_replaces_the_map(self):
         before = sample.map_file().read_bytes()
+        for format in ["ply", "orthophoto", "3dtiles"]:
+            with self.assertRaises(fovea.OutputError, msg=format):
+                self.map.export(sample.map_file(), format, force=True)
         with self.assertRaises(fovea.OutputError):
             self.map.render(sample.map_file(), force=True)
         with self.assertRaises(fovea.OutputError):

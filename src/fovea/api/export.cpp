@@ -9,6 +9,7 @@
 
 #include "fovea/drive/command_files.h"
 #include "fovea/errors.h"
+#include "fovea/exporting/export_files.h"
 #include "fovea/exporting/frame_formats.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
@@ -146,6 +147,7 @@ ExportedMap write_points(const MapReader& map, const std::filesystem::path& outp
 ExportedMap export_map(const std::filesystem::path& map, const std::filesystem::path& output,
                        const ExportOptions& options) {
   const std::string format = format_of(output, options);
+  check_files(export_files({map, output, options.drive}, format, options.force));
   const MapReader reader(map);
   if (format == "colmap" || format == "nerf") {
     return write_views(reader, map, output, format, options);
