@@ -10,6 +10,7 @@ void bind_frame_record(pybind11::module_& module);
 void bind_points(pybind11::module_& module);
 void bind_map(pybind11::module_& module);
 void bind_map_output(pybind11::module_& module);
+void bind_render_drive(pybind11::module_& module);
 void bind_drive(pybind11::module_& module);
 void bind_motion(pybind11::module_& module);
 void bind_stages(pybind11::module_& module);

@@ -44,4 +44,5 @@ PYBIND11_MODULE(_fovea, module) {
   bind_stages(module);
   bind_registration(module);
   bind_view(module);
+  bind_render_drive(module);
 }

@@ -103,7 +103,7 @@ py::array structured_array(const py::object& points) {
     fields.append(py::make_tuple(name, array.dtype(), shape));
     columns.append(py::make_tuple(name, array));
   }
-  const py::object table = py::module_::import("numpy").attr("empty")(count, fields);
+  py::array table = py::module_::import("numpy").attr("empty")(count, fields);
   for (const py::handle column : columns) {
     table.attr("__setitem__")(column.attr("__getitem__")(0), column.attr("__getitem__")(1));
   }

@@ -26,7 +26,7 @@ from ._mapping import (
     evaluate,
     map_drive,
 )
-from ._records import ExportedMap, FrameRecord, MergeFigures, ViewRecord
+from ._records import ExportedMap, FrameRecord, MergeFigures, RenderFigures, ViewRecord
 from ._results import ColoredPoints, Images, RayVerdict, SurfaceSamples, Upsampled
 from ._stages import (
     FovealRegion,
@@ -72,6 +72,7 @@ __all__ = [
     "Progress",
     "RayVerdict",
     "RegistrationResult",
+    "RenderFigures",
     "SurfaceSamples",
     "SweepMotion",
     "SweepTiming",

@@ -25,6 +25,7 @@ from ._mapping import map_drive as map_drive
 from ._records import ExportedMap as ExportedMap
 from ._records import FrameRecord as FrameRecord
 from ._records import MergeFigures as MergeFigures
+from ._records import RenderFigures as RenderFigures
 from ._records import ViewRecord as ViewRecord
 from ._results import ColoredPoints as ColoredPoints
 from ._results import Images as Images
@@ -76,6 +77,7 @@ __all__ = [
     "Progress",
     "RayVerdict",
     "RegistrationResult",
+    "RenderFigures",
     "SurfaceSamples",
     "SweepMotion",
     "SweepTiming",

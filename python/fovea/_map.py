@@ -56,6 +56,12 @@ class Map(_fovea.Map):
         return _fovea._render(self._open_path(), output, force, options, drive,
                               -1 if camera is None else camera, foreign)
 
+    def render_drive(self, output, poses, *, cameras=None, lidar=None, rate=10.0, reach=80.0,
+                     exposure="auto", threads=0, force=False):
+        """Writes a drive of what cameras and a LiDAR see from poses, and returns RenderFigures."""
+        return _fovea._render_drive(self._open_path(), output, poses, cameras or {}, lidar or "",
+                                    rate, reach, exposure, threads, force)
+
     def plot_top(self, ax=None, *, where="", box=None, pixel=0.1):
         """Draws the map from above with matplotlib and returns the axes."""
         from ._plot import plot_top

@@ -1,16 +1,16 @@
 """Maps and their points. Poses are 4x4 matrices T_to_from, lengths m, angles rad, times ns."""
 import os
 import pathlib
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from . import Drive
+from . import Camera, Drive
 from ._meta import Meta
 from ._records import ExportedMap
 from ._records import FrameRecord as FrameRecord
-from ._records import MergeFigures
+from ._records import MergeFigures, RenderFigures
 
 __all__ = ["Map", "Points", "merge"]
 
@@ -138,6 +138,28 @@ class Map:
 
         ConfigError for conditions that are not understood and a box without a volume; ValueError
         for a box of another shape.
+        """
+    def render_drive(
+        self,
+        output: _Path,
+        poses: npt.ArrayLike,
+        *,
+        cameras: Optional[Mapping[str, Camera]] = None,
+        lidar: Optional[str] = None,
+        rate: float = 10.0,
+        reach: float = 80.0,
+        exposure: str = "auto",
+        threads: int = 0,
+        force: bool = False,
+    ) -> RenderFigures:
+        """Writes a drive of what cameras and a LiDAR see, as `fovea render --poses` does.
+
+        poses: N x 4 x 4, T_local_lidar of the frames. cameras: by the names of their folders. lidar:
+        name of a data sheet, such as 'hdl64' (docs/rendering.md). rate: frames a second. reach:
+        how far is seen, m. exposure: as of export(). threads: 0 for all.
+
+        ValueError for wrong arguments, ConfigError for an unknown lidar or exposure, OutputError
+        for an output that exists or cannot be written.
         """
     def plot_top(
         self,

@@ -4,7 +4,7 @@ from typing import Dict, List, Optional
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["ExportedMap", "FrameRecord", "MergeFigures", "ViewRecord"]
+__all__ = ["ExportedMap", "FrameRecord", "MergeFigures", "RenderFigures", "ViewRecord"]
 
 _Doubles = npt.NDArray[np.float64]
 
@@ -128,3 +128,21 @@ class MergeFigures:
     @property
     def log2_gain(self) -> _Doubles:
         """3: base-2 logarithms of the gains of red, green, blue, second map = first map * gain."""
+
+class RenderFigures:
+    """What Map.render_drive() wrote."""
+
+    @property
+    def frames(self) -> int: ...
+    @property
+    def covered(self) -> float:
+        """Mean share of the images' pixels that show something."""
+    @property
+    def points(self) -> float:
+        """Mean number of points of the scans."""
+    @property
+    def blank(self) -> int:
+        """Images without anything."""
+    @property
+    def empty(self) -> int:
+        """Scans without a point, which are not written."""

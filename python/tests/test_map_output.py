@@ -105,6 +105,37 @@ class RenderTest(unittest.TestCase):
             self.map.render(frame=1000)
 
 
+class RenderDriveTest(unittest.TestCase):
+    def setUp(self):
+        self.map = fovea.Map(sample.map_file())
+        self.poses = np.stack([frame.T_local_lidar for frame in self.map.frames[:2]])
+
+    def test_a_rendered_drive_is_a_drive(self):
+        camera = fovea.Drive(sample.drive()).cameras[0]
+        output = sample.folder() / "rendered"
+        figures = self.map.render_drive(output, self.poses, cameras={"front": camera},
+                                        lidar="hdl64", rate=5)
+        self.assertEqual(figures.frames, 2)
+        self.assertGreater(figures.covered, 0)
+        self.assertGreater(figures.points, 100)
+        drive = fovea.Drive(output)
+        self.assertEqual(len(drive), 2)
+        self.assertEqual(drive.load(1).stamp - drive.load(0).stamp, 200_000_000)
+        with self.assertRaises(fovea.OutputError):
+            self.map.render_drive(output, self.poses, lidar="hdl64")
+
+    def test_errors(self):
+        output = sample.folder() / "not_rendered"
+        for options in [{}, {"lidar": "hdl64", "rate": 0}, {"lidar": "hdl64", "reach": 1e6}]:
+            with self.assertRaises(ValueError, msg=str(options)):
+                self.map.render_drive(output, self.poses, **options)
+        with self.assertRaises(ValueError):
+            self.map.render_drive(output, self.poses[0], lidar="hdl64")
+        with self.assertRaises(fovea.ConfigError):
+            self.map.render_drive(output, self.poses, lidar="eye")
+        self.assertFalse(output.exists())
+
+
 class MergeTest(unittest.TestCase):
     def test_merges_parts_of_a_drive(self):
         parts = []
