@@ -92,8 +92,10 @@ def _config(las: pathlib.Path, folder: pathlib.Path, cube: Cube) -> Any:
             if header.point_count:
                 writer.write_points(reader.read_points(1))
     laz = copclib.LazReader(str(one)).laz_config
+    # copclib 2.6.3 reads the WKT of a LAZ file 6 bytes too late.
+    wkt = next((record.string for record in header.vlrs.get("WktCoordinateSystemVlr")), "")
     config = copclib.CopcConfigWriter(
-        header.point_format.id, laz.las_header.scale, laz.las_header.offset, laz.wkt,
+        header.point_format.id, laz.las_header.scale, laz.las_header.offset, wkt,
         laz.extra_bytes_vlr)
     edge = cube.edge * float(header.scales[0])
     corner = cube.low * header.scales + header.offsets
