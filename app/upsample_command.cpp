@@ -13,7 +13,6 @@
 #include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/errors.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/map/point_files/cloud_ply.h"
 #include "fovea/upsample.h"
 
 namespace fovea::app {

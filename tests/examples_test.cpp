@@ -73,4 +73,38 @@ TEST(WriteDriveExample, WritesADriveOfItsOwnFormat) {
   EXPECT_EQ(last.images.front().width, 64);
 }
 
+TEST(ColorCloudExample, ColorsWhatTheCameraSees) {
+  const TemporaryFolder folder;
+  // One camera 64 pixels wide that looks along x, red on its left half and blue on its right one.
+  Image image(64, 48, 3);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) image.pixel(x, y)[x < 32 ? 0 : 2] = 200;
+  }
+  const std::vector<std::uint8_t> png = encode_png(image);
+  write(folder / "image.png", std::string(png.begin(), png.end()));
+  write(folder / "camera.txt", "32 32 31.5 23.5\n0 -1 0 0\n0 0 -1 0\n1 0 0 0\n");
+  const std::vector<float> points{5, 1, 0, 0.5f, 5, -1, 0, 0.25f, -5, 0, 0, 1};
+  write(folder / "scan.bin",
+        std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(float)));
+  const auto run = [&](const std::string& camera) {
+    return std::system(fmt::format("cd '{}' && '{}' scan.bin image.png {} out.ply > said.txt 2>&1",
+                                   folder.path().string(), FOVEA_COLOR_EXAMPLE, camera)
+                           .c_str());
+  };
+  ASSERT_EQ(run("camera.txt"), 0);
+  EXPECT_EQ(read_text(folder / "said.txt"), "2 of 3 points have a color\n");
+  const std::string ply = read_text(folder / "out.ply"), end = "end_header\n";
+  const std::string rows = ply.substr(ply.find(end) + end.size());
+  constexpr std::size_t kRow = 19;  // x y z, red green blue, intensity
+  ASSERT_EQ(rows.size(), 3 * kRow);
+  const auto color = [&](std::size_t i) { return rows.substr(i * kRow + 12, 3); };
+  EXPECT_EQ(color(0), (std::string{'\xc8', '\0', '\0'}));
+  EXPECT_EQ(color(1), (std::string{'\0', '\0', '\xc8'}));
+  EXPECT_EQ(color(2), "\x80\x80\x80");
+
+  write(folder / "scaled.txt", "32 32 31.5 23.5\n0 -2 0 0\n0 0 -2 0\n2 0 0 0\n");
+  EXPECT_NE(run("scaled.txt"), 0);
+  EXPECT_NE(read_text(folder / "said.txt").find("has no camera"), std::string::npos);
+}
+
 }  // namespace fovea::examples_test

@@ -157,7 +157,7 @@ TEST_F(ViewSynthesisProgram, ColmapReadsTheModel) {
 }
 
 /// COLMAP finds features of its own and triangulates them. The cameras stay as exported, so that
-/// its reprojection error tells how well they fit the images.
+/// its reprojection error shows how well they fit the images.
 TEST_F(ViewSynthesisProgram, ColmapTriangulatesItsFeaturesWithTheExportedCameras) {
   FOVEA_COLMAP_OR_SKIP();
   ASSERT_EQ(export_map("colmap", "colmap", with_drive() + " --max-points 20000").exit_code, 0);

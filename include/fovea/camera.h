@@ -15,8 +15,7 @@ struct Camera {
   int width = 0, height = 0;
   double fx = 0, fy = 0, cx = 0, cy = 0;
   RigidMotion T_cam_lidar = RigidMotion::Identity();
-  /// s, images are taken this long after their scan's stamp; of a drive the median, and of
-  /// DriveInfo::camera_at() that of one image.
+  /// s, images are taken this long after their scan's stamp: the median of a drive.
   double image_delay = 0;
 
   /// Points nearer than this to the camera's plane are never projected (m).

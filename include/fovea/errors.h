@@ -9,7 +9,8 @@
 
 namespace fovea {
 
-/// Base of every error the library throws. `what()` reads "WHAT, WHERE, WHAT TO DO".
+/// Base of the errors of data, settings and files. A wrong argument of a function is
+/// std::invalid_argument. `what()` reads "WHAT, WHERE, WHAT TO DO".
 class FOVEA_API Error : public std::runtime_error {
  public:
   /// @param what    what is wrong ("matrix has 11 numbers, expected 12")

@@ -3,6 +3,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "fovea/platform.h"
@@ -41,6 +44,15 @@ struct FOVEA_API Image {
     return data.data() + (static_cast<std::size_t>(y) * width + x) * channels;
   }
 };
+
+/// Reads an 8-bit gray or RGB image, PNG or JPEG; the content states which, not the name.
+/// InputError if it is neither, damaged, truncated, of 16 bits, or wider or higher than 8192
+/// pixels.
+FOVEA_API Image read_image(const std::filesystem::path& file);
+
+/// The same of the bytes of a file.
+/// @param name  stands for the file in errors
+FOVEA_API Image decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
 
 /// Color at sub-pixel position (u, v), bilinear between the four pixel centers around it;
 /// coordinates are clamped to the image. A gray image gives three equal channels (0-255).

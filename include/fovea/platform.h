@@ -1,6 +1,10 @@
 // What all public headers need: visible symbols, Eigen's alignment, and the version.
 #pragma once
 
+#if __cplusplus < 202002L
+#error "Fovea needs C++20: compile with -std=c++20"
+#endif
+
 #include <Eigen/Core>
 
 /// A class or function of the shared library.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string_view>
 #include <vector>
 
@@ -58,9 +59,9 @@ struct FOVEA_API PointCloud {
   std::vector<std::uint8_t> interpolated;  ///< 1 if made by upsampling, 0 if measured
   std::vector<std::uint8_t> views;         ///< images that gave the color; 255: or more
   std::vector<std::uint8_t> spread;        ///< RMS of their differences from it, gray values
-  std::vector<std::uint16_t> weight;       ///< sum of their weights (mapping/color_fusion.h)
-  std::vector<std::uint8_t> saturated;     ///< channels saturated in every view (fused_color.h)
-  std::vector<std::uint8_t> reason;        ///< why it is there (core/point_reason.h)
+  std::vector<std::uint16_t> weight;       ///< sum of the weights of these images
+  std::vector<std::uint8_t> saturated;     ///< bits of the channels saturated in all images
+  std::vector<std::uint8_t> reason;        ///< a PointRule, and kExposureMatched
   std::vector<std::uint8_t> sampling_level;
 
   std::size_t size() const { return position.size(); }
@@ -83,5 +84,13 @@ struct FOVEA_API PointCloud {
   /// the column `sensor` may be missing.
   void append(const PointCloud& other);
 };
+
+/// Writes a cloud as binary little endian PLY: x y z (float, m, origin added), and where the cloud
+/// has them red green blue (uchar; gray 128 where no camera saw a point), intensity (float) and
+/// interpolated (uchar). The file appears when it is whole.
+/// @param force  replaces the file
+/// @throws OutputError  if the file exists, except with `force`, or cannot be written
+FOVEA_API void write_cloud_ply(const PointCloud& cloud, const std::filesystem::path& file,
+                               bool force = false);
 
 }  // namespace fovea

@@ -33,7 +33,7 @@ FOVEA_API Twist velocity_between(const RigidMotion& T0, const RigidMotion& T1, d
 FOVEA_API double rotation_angle(const Eigen::Matrix3d& R);
 
 /// Whether R is orthonormal with determinant 1, every entry of R^T R within `tolerance`.
-FOVEA_API bool is_rotation(const Eigen::Matrix3d& R, double tolerance);
+FOVEA_API bool is_rotation(const Eigen::Matrix3d& R, double tolerance = 1e-3);
 
 /// The nearest rotation (Frobenius norm): takes the rounding out of a matrix read from text.
 FOVEA_API Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& R);

@@ -49,7 +49,7 @@ py::array_t<double> pixels_of(const Camera& camera, const Floats& points_cam) {
 }  // namespace
 
 void bind_camera(py::module_& module) {
-  py::class_<Camera>(module, "Camera", "A pinhole camera; pixel centres at integers.")
+  py::class_<Camera>(module, "Camera", "A pinhole camera; pixel centers at integers.")
       .def(py::init(&make_pinhole), py::arg("width"), py::arg("height"), py::arg("K"),
            py::arg("T_cam_lidar") = py::none(), py::arg("index") = 0,
            "width, height: pixels; K: 3x3, pixels; T_cam_lidar: 4x4, optical frame (z ahead), or "

@@ -34,12 +34,14 @@ from ._results import SurfaceSamples as SurfaceSamples
 from ._results import Upsampled as Upsampled
 from ._stages import FovealRegion as FovealRegion
 from ._stages import RegistrationResult as RegistrationResult
+from ._stages import ScanFit as ScanFit
 from ._stages import color_points as color_points
 from ._stages import compensate_sweep as compensate_sweep
 from ._stages import foveal_points as foveal_points
 from ._stages import ray_filter as ray_filter
 from ._stages import register_scans as register_scans
 from ._stages import sample_surfaces as sample_surfaces
+from ._stages import scan_fit as scan_fit
 from ._stages import segment_ground as segment_ground
 from ._stages import sensor_height as sensor_height
 from ._stages import upsample as upsample
@@ -77,6 +79,7 @@ __all__ = [
     "Progress",
     "RayVerdict",
     "RegistrationResult",
+    "ScanFit",
     "RenderFigures",
     "SurfaceSamples",
     "SweepMotion",
@@ -93,6 +96,7 @@ __all__ = [
     "ray_filter",
     "register_scans",
     "sample_surfaces",
+    "scan_fit",
     "segment_ground",
     "sensor_height",
     "upsample",

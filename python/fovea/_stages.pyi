@@ -11,11 +11,13 @@ from ._results import ColoredPoints, SurfaceSamples, Upsampled
 __all__ = [
     "FovealRegion",
     "RegistrationResult",
+    "ScanFit",
     "color_points",
     "compensate_sweep",
     "foveal_points",
     "ray_filter",
     "register_scans",
+    "scan_fit",
     "sample_surfaces",
     "segment_ground",
     "sensor_height",
@@ -108,6 +110,30 @@ class RegistrationResult:
         """6x6, of a twist of the source in its own frame, rotation first (1/rad^2, 1/m^2). Too
         optimistic: it treats the pairs as independent."""
 
+class ScanFit:
+    """What scan_fit() returns."""
+
+    @property
+    def vertical(self) -> int:
+        """Points on vertical surfaces, one in each cell of 0.25 m."""
+    @property
+    def overlap(self) -> float:
+        """Share of them with a counterpart within 1 m."""
+    @property
+    def on_plane(self) -> float:
+        """Share of these within 0.1 m of their counterpart's plane."""
+    @property
+    def shows_one_place(self) -> bool:
+        """Whether both scans show one place, and the motion is right."""
+
+def scan_fit(
+    target: npt.ArrayLike, source: npt.ArrayLike, T_target_source: npt.ArrayLike
+) -> ScanFit:
+    """How the vertical surfaces of two registered scans lie on each other.
+
+    target, source: as those of register_scans(), z up; T_target_source: 4x4, m.
+    """
+
 def register_scans(
     target: npt.ArrayLike,
     source: npt.ArrayLike,
@@ -117,6 +143,7 @@ def register_scans(
     max_iterations: int = 100,
     max_points: int = 0,
     max_distance: float = 1.0,
+    voxel: float = 0.25,
     neighbors: int = 10,
     robust_width: float = 0.0,
     prior: Optional[npt.ArrayLike] = None,
@@ -127,7 +154,8 @@ def register_scans(
     target, source: N x 3 and M x 3, m, each in the frame of its sensor; points that are not finite
     are left out. guess: T_target_source, 4x4, within max_distance of the truth; None: the identity.
     method: 'gicp', 'point_to_point' or 'point_to_plane'. max_points: of each scan, 0: all.
-    max_distance: m, pairs further apart are not used. neighbors: of a point, for its normal.
+    max_distance: m, pairs further apart are not used. voxel: m, one point is kept in each cell of
+    this edge, 0: all. neighbors: of a point, for its normal.
     robust_width: m, 0: no robust kernel. prior: T_target_source, with prior_sigma: 6, rad and m.
     """
 

@@ -82,8 +82,11 @@ class Registration(unittest.TestCase):
         scans = [fovea.compensate_sweep(frame.points, frame.motion, sweep=drive.sweep)
                  for frame in drive]
         expected = np.linalg.inv(drive[0].T_local_lidar) @ drive[1].T_local_lidar
-        result = fovea.register_scans(*scans, max_distance=2, robust_width=0.1, max_points=20000)
+        result = fovea.register_scans(*scans)
         self.assertTrue(result.converged)
+        self.assertTrue(fovea.scan_fit(*scans, result.T_target_source).shows_one_place)
+        turned = np.diag([-1.0, -1, 1, 1])
+        self.assertFalse(fovea.scan_fit(*scans, turned).shows_one_place)
         np.testing.assert_allclose(result.T_target_source, expected, atol=0.05)
         self.assertGreater(result.pairs, 1000)
         self.assertTrue((np.linalg.eigvalsh(result.information) > 0).all())
@@ -171,7 +174,7 @@ class WrongArguments(unittest.TestCase):
         points = wall(5)
         for keywords in {"rate": 6}, {"rate": -1}, {"max_edge": np.nan}:
             self.expect(fovea.upsample, points, CAMERA, **keywords)
-        for keywords in ({"neighbors": 0}, {"max_distance": 0}, {"method": "magic"},
+        for keywords in ({"neighbors": 0}, {"max_distance": 0}, {"voxel": -1}, {"method": "magic"},
                          {"guess": np.ones((4, 4))}, {"prior": np.eye(4)},
                          {"prior": np.eye(4), "prior_sigma": np.zeros(6)}):
             self.expect(fovea.register_scans, points, points, **keywords)
@@ -203,7 +206,7 @@ class Threads(unittest.TestCase):
         ended = threading.Event()
 
         def register():
-            fovea.register_scans(points, points, np.eye(4))
+            fovea.register_scans(points, points, np.eye(4), voxel=0)
             ended.set()
 
         thread = threading.Thread(target=register)

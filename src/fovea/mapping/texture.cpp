@@ -1,5 +1,11 @@
 #include "fovea/texture.h"
 
+#include <fmt/format.h>
+
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+
 #include "fovea/core/parallel.h"
 
 namespace fovea {
@@ -12,9 +18,41 @@ Rgb sample(const Image& image, const Eigen::Vector2d& pixel, ImageSampling sampl
   return to_rgb(bilinear(image, at.x(), at.y()));
 }
 
+void require_size(std::string_view what, int width, int height, const Camera& camera) {
+  if (width == camera.width && height == camera.height) return;
+  throw std::invalid_argument(
+      fmt::format("color_points: the {} has {} x {} pixels, the camera {} x {}", what, width,
+                  height, camera.width, camera.height));
+}
+
+void check(const PointCloud& points_cam, const View& view) {
+  const auto& [image, camera, frame, mask] = view;
+  if (!points_cam.origin.isZero()) {
+    throw std::invalid_argument("color_points: the points' origin is not 0, the camera");
+  }
+  if (!(camera.fx > 0 && camera.fy > 0)) {
+    throw std::invalid_argument("color_points: the camera has no focal length");
+  }
+  if (camera.index < 0 || camera.index > std::numeric_limits<std::int8_t>::max()) {
+    throw std::invalid_argument(
+        fmt::format("color_points: the camera has the number {}, beyond 0 to 127", camera.index));
+  }
+  if (mask != nullptr) require_size("mask", mask->width(), mask->height(), camera);
+  if (image.empty()) return;
+  require_size("image", image.width, image.height, camera);
+  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
+  if ((image.channels != 1 && image.channels != 3) ||
+      image.data.size() != pixels * std::size_t(image.channels)) {
+    throw std::invalid_argument(
+        fmt::format("color_points: the image has {} bytes, not 1 or 3 channels of {} x {} pixels",
+                    image.data.size(), image.width, image.height));
+  }
+}
+
 }  // namespace
 
 void color_points(PointCloud& points_cam, const View& view, ImageSampling sampling) {
+  check(points_cam, view);
   const std::size_t n = points_cam.size();
   points_cam.color.assign(n, LogColor());
   points_cam.camera.assign(n, kNoCamera);

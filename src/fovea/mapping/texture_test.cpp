@@ -1,8 +1,13 @@
 #include "fovea/texture.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <stdexcept>
 
 namespace fovea::texture_test {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 TEST(Texture, ColorIsTheImageAtTheProjection) {
   Camera camera;
@@ -68,6 +73,44 @@ TEST(Texture, GrayImagesGiveThreeEqualChannels) {
   cloud.position = {{1, 1, 4}};
   color_points(cloud, {image, camera, 0});
   EXPECT_EQ(cloud.color[0], (Rgb{90, 90, 90}));
+}
+
+TEST(Texture, WrongArgumentsAreNamed) {
+  Camera camera;
+  camera.width = 4;
+  camera.height = 2;
+  camera.fx = camera.fy = 1;
+  const Image image(4, 2, 3);
+  PointCloud cloud;
+  cloud.position = {{0, 0, 1}};
+  const auto coloring = [&](const Image& pixels, const Camera& seeing,
+                            const ImageMask* mask = nullptr) {
+    return [&cloud, &pixels, seeing, mask] { color_points(cloud, {pixels, seeing, 0, mask}); };
+  };
+  const auto names = [](const char* text) {
+    return ThrowsMessage<std::invalid_argument>(HasSubstr(text));
+  };
+  const Image wide(5, 2, 3);
+  EXPECT_THAT(coloring(wide, camera), names("the image has 5 x 2 pixels, the camera 4 x 2"));
+  const ImageMask mask(wide);
+  EXPECT_THAT(coloring(image, camera, &mask), names("the mask has 5 x 2 pixels"));
+  Image cut = image;
+  cut.data.pop_back();
+  EXPECT_THAT(coloring(cut, camera), names("the image has 23 bytes"));
+  Image two = image;
+  two.channels = 2;
+  EXPECT_THAT(coloring(two, camera), names("not 1 or 3 channels"));
+
+  Camera wrong = camera;
+  wrong.fx = 0;
+  EXPECT_THAT(coloring(image, wrong), names("no focal length"));
+  for (const int number : {-1, 128}) {
+    wrong = camera;
+    wrong.index = number;
+    EXPECT_THAT(coloring(image, wrong), names("beyond 0 to 127"));
+  }
+  cloud.origin.x() = 1;
+  EXPECT_THAT(coloring(image, camera), names("origin"));
 }
 
 }  // namespace fovea::texture_test

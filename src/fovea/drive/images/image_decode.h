@@ -1,10 +1,7 @@
-// Images from files, PNG or JPEG.
+// Images from files: depth maps, and the limit of read_image() (fovea/image.h).
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "fovea/image.h"
@@ -13,14 +10,6 @@ namespace fovea {
 
 /// Largest width or height that is believed (pixels). A damaged header must not ask for gigabytes.
 inline constexpr unsigned kMaxImageSide = 8'192;
-
-/// Reads an 8-bit grey or RGB image; PNG and JPEG are told apart by their content, not by the name.
-/// InputError with the file's name if it is neither, damaged, truncated, of 16 bits or absurdly
-/// large.
-Image read_image(const std::filesystem::path& file);
-
-/// The same of a file's bytes; `name` stands for the file in errors.
-Image decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
 
 /// Distance of what each pixel shows.
 struct DepthImage {
