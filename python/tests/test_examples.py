@@ -12,7 +12,7 @@ import live_sample
 import sample
 
 ROOT = pathlib.Path(__file__).parents[2]
-EXAMPLES = ROOT / "python" / "examples"
+EXAMPLES = ROOT / "examples"
 PACKAGES = pathlib.Path(fovea.__file__).parents[1]
 
 
