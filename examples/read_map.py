@@ -1,4 +1,4 @@
-"""Heights and colours of a map: read_map.py MAP.fovea"""
+"""Heights and colors of a map: read_map.py MAP.fovea"""
 import sys
 
 import fovea
@@ -11,7 +11,7 @@ points = city.points(where="views >= 2")  # frame `local`, m; "" for all
 low, median, high = np.percentile(points.position[:, 2], [5, 50, 95])
 red, green, blue = points.color.mean(axis=0)
 print(f"{len(points)} seen twice: heights {low:.2f} {median:.2f} {high:.2f} m, "
-      f"mean colour {red:.0f} {green:.0f} {blue:.0f}")
+      f"mean color {red:.0f} {green:.0f} {blue:.0f}")
 
 # A tile at a time, for maps that are larger than the memory; in the frames of their submaps.
 T_local_submap = city.submaps

@@ -1,6 +1,6 @@
-"""Fovea: drives (LiDAR, cameras, GPS/INS) into coloured 3D point maps.
+"""Fovea: drives (LiDAR, cameras, GPS/INS) into colored 3D point maps.
 
-Poses are 4x4 matrices T_to_from, lengths metres, angles radians, times int nanoseconds;
+Poses are 4x4 matrices T_to_from, lengths meters, angles radians, times int nanoseconds;
 docs/python.md has examples.
 """
 from . import _processor  # first of all: the compiled module may not run here

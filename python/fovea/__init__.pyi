@@ -1,6 +1,6 @@
-"""Fovea: drives (LiDAR, cameras, GPS/INS) into coloured 3D point maps.
+"""Fovea: drives (LiDAR, cameras, GPS/INS) into colored 3D point maps.
 
-Poses are 4x4 matrices T_to_from, lengths metres, angles radians, times int nanoseconds.
+Poses are 4x4 matrices T_to_from, lengths meters, angles radians, times int nanoseconds.
 """
 from ._drive import Camera as Camera
 from ._drive import CameraModel as CameraModel

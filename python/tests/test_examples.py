@@ -36,7 +36,7 @@ class ExamplesTest(unittest.TestCase):
 
     def test_read_map(self):
         self.expect(run_python(EXAMPLES / "read_map.py", sample.map_file()), "points from",
-                    "mean colour")
+                    "mean color")
 
     def test_draw_map(self):
         picture = sample.folder() / "top.ppm"
