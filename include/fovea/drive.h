@@ -117,8 +117,8 @@ struct DriveCamera {
 
 struct DriveScan {
   TimeNs stamp = 0;
-  /// LiDAR frame, m. Each of these columns may be empty: intensity (up to 1, 255 or 65535), time (s
-  /// from the stamp), ring.
+  /// LiDAR frame, right-handed, z up, m. Each of these columns may be empty: intensity (up to 1,
+  /// 255 or 65535), time (s from the stamp), ring.
   PointCloud points;
 };
 
@@ -136,6 +136,7 @@ struct DriveWriterOptions {
   /// the timing of `sweep`.
   std::map<std::string, RigidMotion> further_lidars = {};
   std::string first_lidar = "first";  ///< name of the first LiDAR if there are further ones
+  bool allow_dropped = false;         ///< however many points cannot be used
 };
 
 struct WrittenDrive {
@@ -165,7 +166,8 @@ class FOVEA_API DriveWriter {
   /// @param T_world_lidar  pose at the scan's stamp, in any fixed frame; absent: not known
   /// @throws std::invalid_argument  for a stamp that is not after the one before, an unknown
   ///         camera, an image of another size, a column of another length, or a pose that is none
-  /// @throws InputError             for a scan without a usable point, or a damaged image file
+  /// @throws InputError             if over 10 % of the points so far cannot be used, except with
+  ///         `allow_dropped`; for a scan without a usable point, or a damaged image file
   void add(const DriveScan& scan, const std::vector<DriveImage>& images = {},
            const std::optional<RigidMotion>& T_world_lidar = std::nullopt);
   /// Adds a scan of a further LiDAR, in its own frame. It belongs to the frame nearest in time.

@@ -48,14 +48,14 @@ class PythonDriveWriter {
   PythonDriveWriter(const std::filesystem::path& path,
                     const std::map<std::string, CameraModel>& cameras, bool force, bool compensated,
                     const std::map<std::string, Doubles>& further_lidars,
-                    const std::string& first_lidar) {
+                    const std::string& first_lidar, bool allow_dropped) {
     std::vector<DriveCamera> written;
     for (const auto& [name, model] : cameras) {
       DriveCamera& camera = written.emplace_back(model.camera);
       camera.name = name;
       camera.number = static_cast<int>(written.size()) - 1;
     }
-    DriveWriterOptions options{force, compensated, {}, {}, first_lidar};
+    DriveWriterOptions options{force, compensated, {}, {}, first_lidar, allow_dropped};
     for (const auto& [name, T_lidar_sensor] : further_lidars) {
       options.further_lidars.emplace(name, motion_from(T_lidar_sensor));
     }
@@ -141,15 +141,16 @@ void bind_drive_writer(py::module_& module) {
                                 "data set. As a context manager, it closes the drive at the end, "
                                 "and keeps nothing after an exception.")
       .def(py::init<const std::filesystem::path&, const std::map<std::string, CameraModel>&, bool,
-                    bool, const std::map<std::string, Doubles>&, const std::string&>(),
+                    bool, const std::map<std::string, Doubles>&, const std::string&, bool>(),
            py::arg("path"), py::kw_only(),
            py::arg("cameras") = std::map<std::string, CameraModel>(), py::arg("force") = false,
            py::arg("compensated") = false,
            py::arg("further_lidars") = std::map<std::string, Doubles>(),
-           py::arg("first_lidar") = "first",
+           py::arg("first_lidar") = "first", py::arg("allow_dropped") = false,
            "cameras: by name; their numbers follow the names. compensated: the scans' motion was "
            "undone already. further_lidars: T_lidar_sensor, 4x4, by name; first_lidar: the name of "
-           "the first LiDAR. OutputError if the folder exists (except with force).")
+           "the first LiDAR. allow_dropped: over 10 % of the points may be unusable. OutputError "
+           "if the folder exists (except with force).")
       .def("add_scan", &PythonDriveWriter::add_scan, py::arg("lidar"), py::arg("points"),
            py::arg("stamp"), py::kw_only(), py::arg("intensity") = py::none(),
            py::arg("times") = py::none(), py::arg("rings") = py::none(),

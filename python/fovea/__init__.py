@@ -46,6 +46,8 @@ from ._stages import (
 )
 from .errors import ConfigError, Error, InputError, OutputError
 
+from . import laz  # needs its packages only when it writes
+
 __all__ = [
     "Camera",
     "CameraModel",
@@ -74,8 +76,8 @@ __all__ = [
     "Progress",
     "RayVerdict",
     "RegistrationResult",
-    "ScanFit",
     "RenderFigures",
+    "ScanFit",
     "SurfaceSamples",
     "SweepMotion",
     "SweepTiming",

@@ -2,6 +2,7 @@
 
 Poses are 4x4 matrices T_to_from, lengths meters, angles radians, times int nanoseconds.
 """
+from . import laz as laz
 from ._drive import Camera as Camera
 from ._drive import CameraModel as CameraModel
 from ._drive import Drive as Drive

@@ -212,10 +212,11 @@ class DriveWriter:
         compensated: bool = False,
         further_lidars: Mapping[str, npt.ArrayLike] = ...,
         first_lidar: str = "first",
+        allow_dropped: bool = False,
     ) -> None:
-        """cameras: by name; compensated: the motion was undone in the scans already;
-        further_lidars: T_lidar_sensor, 4x4, by name. OutputError if the folder exists (except with
-        force)."""
+        """cameras: by name, their numbers follow the names; compensated: the motion was undone in
+        the scans already; further_lidars: T_lidar_sensor, 4x4, by name; allow_dropped: over 10 % of
+        the points may be unusable. OutputError if the folder exists (except with force)."""
     def add_scan(
         self,
         lidar: str,

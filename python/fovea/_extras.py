@@ -5,12 +5,15 @@ import importlib
 from typing import Any
 
 
+_PACKAGES = {"laz": '"laspy[lazrs]" copclib', "plot": "matplotlib"}
+
+
 def load(module: str, extra: str) -> Any:
-    """A module of an optional package. ImportError that names the extra to install."""
+    """A module of an optional package. ImportError that names the packages to install."""
     try:
         return importlib.import_module(module)
     except ImportError as error:
         package = module.split(".")[0]
         raise ImportError(
-            f'{package} is missing or cannot be loaded ({error}): pip install "fovea[{extra}]"',
+            f'{package} is missing or cannot be loaded ({error}): pip install {_PACKAGES[extra]}',
             name=module) from error

@@ -173,7 +173,7 @@ class Map:
 
         ax: axes of matplotlib; None: new ones. pixel: edge of a pixel, m.
 
-        ImportError without matplotlib (`pip install "fovea[plot]"`); ValueError if there is no
+        ImportError without matplotlib (`pip install matplotlib`); ValueError if there is no
         point or the picture is too large.
         """
     def export(

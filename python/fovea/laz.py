@@ -1,4 +1,4 @@
-"""LAZ and COPC files of maps and points, with laspy and copclib (pip install "fovea[laz]").
+"""LAZ and COPC files of maps and points, with laspy and copclib (pip install "laspy[lazrs]" copclib).
 
     fovea.laz.write(fovea.Map("street.fovea"), "street.laz", crs="utm")
     fovea.laz.write("street.fovea", "street.copc.laz")

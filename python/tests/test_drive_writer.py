@@ -62,6 +62,9 @@ class DriveWriterTest(unittest.TestCase):
         bad = points()
         bad[3] = np.nan
         writer.add(bad, START)
+        late = np.arange(len(bad)) * 5000.0  # microseconds
+        with self.assertRaisesRegex(fovea.InputError, "over 1 s off the stamp"):
+            writer.add(points(), START + STEP, times=late)
         self.assertEqual(writer.close(), {"scans": 1, "images": 0, "poses": 0, "points_dropped": 1})
         with self.assertRaises(RuntimeError):
             writer.add(points(), START + STEP)

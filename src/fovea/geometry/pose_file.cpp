@@ -89,7 +89,8 @@ RigidMotion checked_pose(const Eigen::Matrix<double, 3, 4>& matrix) {
         fmt::format("a pose lies over {:.0f} km from the origin", kMaxPosition / 1000));
   }
   if (!is_rotation(pose.linear(), kRotationTolerance)) {
-    throw std::invalid_argument("a pose has no rotation matrix");
+    throw std::invalid_argument(fmt::format("a pose has no rotation matrix (determinant {:.3g})",
+                                            pose.linear().determinant()));
   }
   // Full digits are kept as they are, so that what we write reads back to the same bits.
   if (!is_rotation(pose.linear(), kRotationRounding)) {

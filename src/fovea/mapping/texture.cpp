@@ -30,6 +30,8 @@ void check(const PointCloud& points_cam, const View& view) {
   if (!points_cam.origin.isZero()) {
     throw std::invalid_argument("color_points: the points' origin is not 0, the camera");
   }
+  if (mask != nullptr) require_size("mask", mask->width(), mask->height(), camera);
+  if (image.empty()) return;  // a drive without cameras
   if (!(camera.fx > 0 && camera.fy > 0)) {
     throw std::invalid_argument("color_points: the camera has no focal length");
   }
@@ -37,8 +39,6 @@ void check(const PointCloud& points_cam, const View& view) {
     throw std::invalid_argument(
         fmt::format("color_points: the camera has the number {}, beyond 0 to 127", camera.index));
   }
-  if (mask != nullptr) require_size("mask", mask->width(), mask->height(), camera);
-  if (image.empty()) return;
   require_size("image", image.width, image.height, camera);
   const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
   if ((image.channels != 1 && image.channels != 3) ||

@@ -109,6 +109,8 @@ TEST(Texture, WrongArgumentsAreNamed) {
     wrong.index = number;
     EXPECT_THAT(coloring(image, wrong), names("beyond 0 to 127"));
   }
+  color_points(cloud, {Image(), wrong});  // without an image there may be no camera
+  EXPECT_EQ(cloud.camera[0], kNoCamera);
   cloud.origin.x() = 1;
   EXPECT_THAT(coloring(image, camera), names("origin"));
 }

@@ -39,10 +39,14 @@ std::string remedy_for(const DroppedPoints& dropped) {
   return "restore the scans from a copy";
 }
 
-void require_few_dropped(const DroppedPoints& dropped, std::size_t kept, const std::string& where) {
+bool are_too_many(const DroppedPoints& dropped, std::size_t kept) {
   constexpr double kMostShare = 0.1;
+  return double(dropped.faulty()) > kMostShare * double(kept + dropped.faulty());
+}
+
+void require_few_dropped(const DroppedPoints& dropped, std::size_t kept, const std::string& where) {
+  if (!are_too_many(dropped, kept)) return;
   const std::size_t faulty = dropped.faulty(), all = kept + faulty;
-  if (double(faulty) <= kMostShare * double(all)) return;
   throw InputError(fmt::format("{} of {} points ({:.3g} %) cannot be used: {}", faulty, all,
                                100 * double(faulty) / double(all), reasons_of(dropped)),
                    where, remedy_for(dropped) + "; --allow-dropped uses the others");

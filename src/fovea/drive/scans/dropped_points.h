@@ -26,6 +26,10 @@ std::string reasons_of(const DroppedPoints& dropped);
 /// What a user can do about the most frequent fault.
 std::string remedy_for(const DroppedPoints& dropped);
 
+/// Whether over 10 % of the points are faulty.
+/// @param kept  points that are used
+bool are_too_many(const DroppedPoints& dropped, std::size_t kept);
+
 /// InputError that names count, reasons and remedy if over 10 % of the points are faulty.
 /// @param kept   points that are used
 /// @param where  file or folder of the scans

@@ -41,11 +41,20 @@ LidarScan usable_points(const PointCloud& points) {
   return builder.take("scan");
 }
 
+RigidMotion checked_pose_at(TimeNs stamp, const RigidMotion& T_world_lidar) {
+  try {
+    return checked_pose(T_world_lidar.matrix().topRows<3>());
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("T_world_lidar of the scan at {} ns: {}", stamp, error.what()));
+  }
+}
+
 }  // namespace
 
 AdapterWriter::AdapterWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
                              DriveWriterOptions options)
-    : writer_(root, options.force) {
+    : writer_(root, options.force), allow_dropped_(options.allow_dropped) {
   drive_.lidar.sweep_compensated = options.sweep_compensated;
   drive_.lidar.sweep = options.sweep;
   std::set<int> numbers;
@@ -82,7 +91,7 @@ void AdapterWriter::add(const DriveScan& scan, const std::vector<DriveImage>& im
     files.push_back(encoded(image));
   }
   std::optional<RigidMotion> pose;
-  if (T_world_lidar) pose = checked_pose(T_world_lidar->matrix().topRows<3>());
+  if (T_world_lidar) pose = checked_pose_at(scan.stamp, *T_world_lidar);
   write_scan(drive_.lidar.name, lidars_.at(drive_.lidar.name), scan);
   for (std::size_t i = 0; i < images.size(); ++i) write_image(images[i], files[i]);
   if (pose) drive_.poses.push_back({scan.stamp, *pose});
@@ -109,16 +118,19 @@ void AdapterWriter::check_image(const DriveImage& image, std::map<std::string, T
   require(before == last.end() || image.stamp > before->second,
           "the image of '{}' at {} ns is not after the one before", image.camera, image.stamp);
   last[image.camera] = image.stamp;
-  if (const auto* pixels = std::get_if<Image>(&image.content)) {
-    const LensCamera& optics = state.camera.optics;
-    require(pixels->width == optics.width && pixels->height == optics.height,
-            "an image of '{}' has {} x {} pixels, not {} x {}", image.camera, pixels->width,
-            pixels->height, optics.width, optics.height);
-  }
 }
 
 AdapterWriter::EncodedImage AdapterWriter::encoded(const DriveImage& image) {
-  if (const auto* pixels = std::get_if<Image>(&image.content)) return {encode_png(*pixels), ".png"};
+  const auto require_size = [&](const Image& pixels) {
+    const LensCamera& optics = find_camera(image.camera).camera.optics;
+    require(pixels.width == optics.width && pixels.height == optics.height,
+            "an image of '{}' has {} x {} pixels, not {} x {}", image.camera, pixels.width,
+            pixels.height, optics.width, optics.height);
+  };
+  if (const auto* pixels = std::get_if<Image>(&image.content)) {
+    require_size(*pixels);
+    return {encode_png(*pixels), ".png"};
+  }
   const auto& path = std::get<std::filesystem::path>(image.content);
   std::vector<std::uint8_t> bytes = InputFile(path, kImageFile).bytes();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -126,16 +138,34 @@ AdapterWriter::EncodedImage AdapterWriter::encoded(const DriveImage& image) {
   if (format != FileFormat::kPng && format != FileFormat::kJpeg) {
     throw InputError("this is no PNG or JPEG image", path.string(), "convert it to PNG");
   }
+  require_size(decode_image(bytes, path.string()));
   return {std::move(bytes), format == FileFormat::kPng ? ".png" : ".jpg"};
+}
+
+void AdapterWriter::require_usable(const LidarState& lidar, const DriveScan& scan,
+                                   const LidarScan& usable) const {
+  DroppedPoints dropped = lidar.dropped;
+  dropped += usable.dropped;
+  const std::size_t kept = lidar.kept + usable.points.size();
+  if (allow_dropped_ || !are_too_many(dropped, kept)) return;
+  throw InputError(
+      fmt::format("{} of {} points so far cannot be used: {}", dropped.faulty(),
+                  kept + dropped.faulty(), reasons_of(dropped)),
+      fmt::format("the scan at {} ns", scan.stamp),
+      "give points in m and times in s from the stamp, leave out what was not measured, "
+      "or set allow_dropped");
 }
 
 void AdapterWriter::write_scan(const std::string& name, LidarState& lidar, const DriveScan& scan) {
   require(!lidar.last || scan.stamp > *lidar.last,
           "the scan at {} ns is not after the one at {} ns", scan.stamp, lidar.last.value_or(0));
   const LidarScan usable = usable_points(scan.points);
+  require_usable(lidar, scan, usable);
   writer_.write_scan(lidar.scans++, scan.stamp, usable.points, ScanFile::kPcd, name);
   ++figures_.scans;
   figures_.dropped += usable.dropped;
+  lidar.dropped += usable.dropped;
+  lidar.kept += usable.points.size();
   lidar.scale.add(usable.points.intensity);
   lidar.last = scan.stamp;
 }

@@ -43,8 +43,9 @@ class AdapterWriter {
   /// @param T_world_lidar  pose at the scan's stamp, in any fixed frame; absent: not known
   /// std::invalid_argument for a stamp that is not after the one before (of the scans, or of the
   /// images of a camera), for a camera that the writer does not have, an image of another size, a
-  /// column of another length than the positions, or a pose that is none. InputError for a scan
-  /// without a usable point, and for an image file that is no PNG or JPEG.
+  /// column of another length than the positions, or a pose that is none. InputError if over 10 %
+  /// of the points so far cannot be used (except with `allow_dropped`), for a scan without a usable
+  /// point, and for an image file that is no PNG or JPEG, or damaged.
   void add(const DriveScan& scan, const std::vector<DriveImage>& images,
            const std::optional<RigidMotion>& T_world_lidar = std::nullopt);
 
@@ -71,6 +72,8 @@ class AdapterWriter {
     std::optional<TimeNs> last;  // stamp
     int scans = 0;
     IntensityScale scale;
+    DroppedPoints dropped;
+    std::size_t kept = 0;
   };
   /// An image in its file's encoding.
   struct EncodedImage {
@@ -80,11 +83,14 @@ class AdapterWriter {
   CameraState& find_camera(const std::string& name);
   /// @param last  stamps of the images before, by camera
   void check_image(const DriveImage& image, std::map<std::string, TimeNs>& last);
-  static EncodedImage encoded(const DriveImage& image);
+  EncodedImage encoded(const DriveImage& image);
+  void require_usable(const LidarState& lidar, const DriveScan& scan,
+                      const LidarScan& usable) const;
   void write_scan(const std::string& name, LidarState& lidar, const DriveScan& scan);
   void write_image(const DriveImage& image, const EncodedImage& file);
 
   GenericDriveWriter writer_;
+  bool allow_dropped_;
   RecordedDrive drive_;
   std::map<std::string, CameraState> cameras_;
   std::map<std::string, LidarState> lidars_;  // by name; of the only LiDAR it is empty

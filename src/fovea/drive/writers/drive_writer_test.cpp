@@ -14,8 +14,11 @@
 
 namespace fovea::drive_writer_test {
 
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::ThrowsMessage;
 
 constexpr TimeNs kStart = 1'700'000'000 * kNsPerSecond, kStep = 100'000'000;
 
@@ -175,6 +178,34 @@ TEST_F(DriveWriterTest, RefusesCamerasThatAreNone) {
   EXPECT_THROW(writer({front(), other}), std::invalid_argument);
   AdapterWriter empty = writer();
   EXPECT_THROW(empty.close(), std::logic_error);
+}
+
+TEST_F(DriveWriterTest, ManyPointsThatCannotBeUsedAreAnError) {
+  AdapterWriter writer = this->writer();
+  writer.add({kStart, points(3)}, {});
+  PointCloud late = points(3);
+  late.time = {0, 20'000, 40'000, 60'000, 80'000};  // microseconds
+  EXPECT_THAT([&] { writer.add({kStart + kStep, late}, {}); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("over 1 s off the stamp"),
+                                              HasSubstr("4 of 10 points so far cannot be used"),
+                                              HasSubstr("or set allow_dropped"))));
+  writer.add({kStart + kStep, points(3)}, {});  // the frame was not added
+  EXPECT_EQ(writer.close().dropped.total(), 0u);
+}
+
+TEST_F(DriveWriterTest, AnImageFileHasTheSizeOfItsCamera) {
+  const std::filesystem::path file = folder_ / "small.png";
+  const std::vector<std::uint8_t> png = encode_png(Image(8, 6, 3));
+  const auto write = [&](std::size_t size) {
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(png.data()), std::streamsize(size));
+  };
+  AdapterWriter writer = this->writer();
+  const auto add = [&] { writer.add({kStart, points(3)}, {{"front", kStart, file}}); };
+  write(png.size());
+  EXPECT_THAT(add, ThrowsMessage<std::invalid_argument>(HasSubstr("has 8 x 6 pixels, not")));
+  write(png.size() / 2);
+  EXPECT_THROW(add(), InputError);
 }
 
 }  // namespace fovea::drive_writer_test
