@@ -163,9 +163,12 @@ TEST_F(Orthophoto, IsMadeInStripes) {
   for (float y = 0.5f; y < 3000; y += 2) along.emplace_back(1500.5f, y, 0.f);
   write_map(along);
   std::size_t filled = 0;
-  const std::size_t rise = rise_of_peak_memory([&] { filled = write(1).filled_pixels; });
+  [[maybe_unused]] const std::size_t rise =
+      rise_of_peak_memory([&] { filled = write(1).filled_pixels; });
   EXPECT_EQ(filled, 1499u);
+#ifndef FOVEA_SANITIZER                     // it keeps memory that was released
   EXPECT_LT(rise, std::size_t{130} << 20);  // a view of all pixels takes 180 MB
+#endif
   const Picture picture(out());
   for (int row = 1; row < 3000; ++row) ASSERT_EQ(picture.at(1500, row)[3], 255) << row;
 }
