@@ -53,7 +53,7 @@ RigidMotion checked_pose_at(TimeNs stamp, const RigidMotion& T_world_lidar) {
 }  // namespace
 
 AdapterWriter::AdapterWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
-                             DriveWriterOptions options)
+                             const DriveWriterOptions& options)
     : writer_(root, options.force), allow_dropped_(options.allow_dropped) {
   drive_.lidar.sweep_compensated = options.sweep_compensated;
   drive_.lidar.sweep = options.sweep;

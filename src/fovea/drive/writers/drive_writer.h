@@ -36,7 +36,7 @@ class AdapterWriter {
   /// std::invalid_argument for cameras of one name or number, LiDARs of one name, or a name that
   /// RecordedCamera or RecordedLidar does not allow.
   AdapterWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
-                DriveWriterOptions options = {});
+                const DriveWriterOptions& options = {});
 
   /// Adds the next frame, or nothing if it throws. Images belong to their stamps: a frame may have
   /// any number of them.
