@@ -17,7 +17,7 @@ std::vector<CityFrames> frames_of_tile(const City& city, const CityTile& tile,
   for (DriveRecord& drive : map.drives()) drives.push_back({std::move(drive), {}});
   for (FrameRecord& frame : map.frames()) {
     const auto of = std::find_if(drives.begin(), drives.end(), [&](const CityFrames& drive) {
-      return frame.index >= drive.drive.first_frame && frame.index < drive.drive.end_frame;
+      return drive.drive.has_frame(frame.index);
     });
     if (of == drives.end()) continue;
     frame.index -= of->drive.frame_shift;

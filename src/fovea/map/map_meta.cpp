@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <sstream>
+
 #include "fovea/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
@@ -54,6 +57,17 @@ double map_tile_size(const MapMeta& meta) {
                      "give a map that 'fovea map' wrote");
   }
   return size->front();
+}
+
+std::vector<int> mapped_cameras(const MapMeta& meta) {
+  const auto found = meta.find(meta_key::kCameras);
+  if (found == meta.end()) return {};
+  std::string text = found->second;  // "2,3"
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream numbers(text);
+  std::vector<int> cameras;
+  for (int camera = 0; numbers >> camera;) cameras.push_back(camera);
+  return cameras;
 }
 
 std::vector<MergedDrive> merged_drives(const MapReader& map) {

@@ -16,6 +16,9 @@ std::optional<GeodeticPoint> map_origin(const MapMeta& meta);
 /// Edge of a map's tiles, m; InputError if it does not tell one that tiles may have.
 double map_tile_size(const MapMeta& meta);
 
+/// Numbers of the cameras that a map was made with; empty if it does not state them.
+std::vector<int> mapped_cameras(const MapMeta& meta);
+
 /// One of the drives of a merged map, and what is its own there.
 struct MergedDrive {
   std::string digest;  ///< of the map that it was before

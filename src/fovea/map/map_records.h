@@ -36,7 +36,11 @@ struct DriveRecord {
   std::optional<double> epoch_year;     ///< of the datum, as a decimal year
   std::optional<HeightType> height_type;
   std::optional<std::string> source_digest;  ///< of the map that fovea merge took the drive from
+
+  bool has_frame(int frame) const { return first_frame <= frame && frame < end_frame; }
 };
+/// Number of the drive of a frame; the number of drives if it belongs to none.
+std::size_t drive_of_frame(const std::vector<DriveRecord>& drives, int frame);
 
 /// A LiDAR of a drive.
 struct SensorRecord {

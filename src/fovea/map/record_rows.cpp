@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -60,6 +61,13 @@ Cell revisit_cell(const std::optional<RevisitedColors>& revisit, const std::stri
 }
 
 }  // namespace
+
+std::size_t drive_of_frame(const std::vector<DriveRecord>& drives, int frame) {
+  const auto found = std::find_if(drives.begin(), drives.end(), [frame](const DriveRecord& drive) {
+    return drive.has_frame(frame);
+  });
+  return static_cast<std::size_t>(found - drives.begin());
+}
 
 const char* to_string(HeightType type) {
   return type == HeightType::kEllipsoidal ? "ellipsoidal" : "orthometric";

@@ -25,15 +25,6 @@ Heights stated_heights(const MapReader& map) {
   return heights;
 }
 
-/// Number of the drive of a frame; the number of drives if it belongs to none.
-std::size_t drive_of_frame(const std::vector<DriveRecord>& drives, int frame) {
-  const auto has_frame = [frame](const DriveRecord& drive) {
-    return drive.first_frame <= frame && frame < drive.end_frame;
-  };
-  return static_cast<std::size_t>(std::find_if(drives.begin(), drives.end(), has_frame) -
-                                  drives.begin());
-}
-
 /// Counts of heights in bins of one centimeter.
 class HeightHistogram {
  public:

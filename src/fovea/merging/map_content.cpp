@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 #include "fovea/errors.h"
 #include "fovea/geometry/geodesy.h"
@@ -117,10 +116,8 @@ std::optional<RigidMotion> stated_T_a_b(const MapContent& a, const MapContent& b
 std::string cameras_of(const std::vector<const MapContent*>& maps) {
   std::set<int> cameras;
   for (const MapContent* map : maps) {
-    std::string text = map->text(meta_key::kCameras);
-    std::replace(text.begin(), text.end(), ',', ' ');
-    std::istringstream numbers(text);
-    for (int camera = 0; numbers >> camera;) cameras.insert(camera);
+    const std::vector<int> mapped = mapped_cameras(map->meta);
+    cameras.insert(mapped.begin(), mapped.end());
   }
   return fmt::format("{}", fmt::join(cameras, ","));
 }

@@ -153,9 +153,7 @@ std::optional<std::string> different_calibration(const std::string& stored, cons
 Frames frames_of(const Frames& frames, const DriveRecord& drive) {
   Frames of_drive;
   std::copy_if(frames.begin(), frames.end(), std::back_inserter(of_drive),
-               [&](const FrameRecord& frame) {
-                 return frame.index >= drive.first_frame && frame.index < drive.end_frame;
-               });
+               [&](const FrameRecord& frame) { return drive.has_frame(frame.index); });
   return of_drive;
 }
 

@@ -11,28 +11,11 @@
 #include "fovea/drive/writers/png_encode.h"
 #include "fovea/errors.h"
 #include "fovea/exporting/views/view_export.h"
-#include "fovea/map/meta_keys.h"
+#include "fovea/map/map_meta.h"
 #include "fovea/pipeline/stored_calibration.h"
 
 namespace fovea {
 namespace {
-
-/// The cameras that a map was made with, as far as its meta data state them.
-std::vector<int> mapped_cameras(const MapMeta& meta) {
-  const auto found = meta.find(meta_key::kCameras);
-  if (found == meta.end()) return {};
-  std::vector<int> cameras;
-  int camera = -1;
-  for (const char c : found->second + ",") {
-    constexpr int kMost = 1000;
-    if (c >= '0' && c <= '9' && camera < kMost) {
-      camera = 10 * std::max(camera, 0) + (c - '0');
-    } else if (camera >= 0) {
-      cameras.push_back(std::exchange(camera, -1));
-    }
-  }
-  return cameras;
-}
 
 DriveMatch match_of(const MapReader& map, const FrameSource& drive,
                     const std::filesystem::path& path) {

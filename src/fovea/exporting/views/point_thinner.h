@@ -26,7 +26,7 @@ class PointThinner {
   };
 
   /// @param cell        edge of a cell, m
-  /// @param max_points  at least 8: so many cells lie about the origin, however large they are
+  /// @param max_points  at least 8: eight cells meet at the origin, however large they are
   PointThinner(double cell, std::size_t max_points)
       : cell_(cell), max_points_(std::max<std::size_t>(max_points, 8)) {}
 

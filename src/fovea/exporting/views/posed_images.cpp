@@ -13,10 +13,8 @@ namespace {
 
 /// Number of the drive of a frame; 0 in a map without drives.
 std::size_t drive_of(int frame, const std::vector<DriveRecord>& drives) {
-  const auto found = std::find_if(drives.begin(), drives.end(), [&](const DriveRecord& drive) {
-    return frame >= drive.first_frame && frame < drive.end_frame;
-  });
-  return found == drives.end() ? 0 : std::size_t(found - drives.begin());
+  const std::size_t drive = drive_of_frame(drives, frame);
+  return drive == drives.size() ? 0 : drive;
 }
 
 const Camera& find_camera(const CamerasOfDrives& cameras, std::size_t drive, int index,
