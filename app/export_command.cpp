@@ -21,10 +21,6 @@
 namespace fovea::app {
 namespace {
 
-constexpr const char* kFormats =
-    "ply, pcd, las, 3dtiles, mesh, glb, orthophoto, "
-    "colmap, nerf, tum, csv, geojson, frames or kitti-poses";
-
 /// The format asked for, or else the one of the output's ending; CLI::ValidationError without
 /// either.
 std::string format_of(const ExportArguments& arguments) {
@@ -34,8 +30,8 @@ std::string format_of(const ExportArguments& arguments) {
   for (const char* format : {"ply", "pcd", "las", "glb", "tum", "csv", "geojson"}) {
     if (ending == std::string(".") + format) return format;
   }
-  throw CLI::ValidationError("--format",
-                             fmt::format("give {}: the output's ending names none", kFormats));
+  throw CLI::ValidationError(
+      "--format", fmt::format("give {}: the output's ending names none", export_format_names()));
 }
 
 /// What would otherwise be ignored without a word.
@@ -80,7 +76,6 @@ CommandFiles files_of(const ExportArguments& arguments, const std::string& forma
   }
   CommandFiles files;
   files.inputs = {arguments.map};
-  if (!arguments.drive.empty()) files.inputs.push_back(arguments.drive);
   files.folder = {arguments.output, arguments.root_only ? FolderUse::kAddTo : FolderUse::kReplace};
   return files;
 }
@@ -123,8 +118,8 @@ void add_export_command(CLI::App& app, Session& session) {
                    "folder), tum, csv or geojson (where the LiDAR was), "
                    "frames (CSV: stamps, poses and gains), or kitti-poses (T_local_lidar a line); "
                    "default: by OUT's ending")
-      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "orthophoto", "colmap",
-                             "nerf", "tum", "csv", "geojson", "frames", "kitti-poses"}));
+      ->check(
+          CLI::IsMember(std::vector<std::string>(kExportFormats.begin(), kExportFormats.end())));
   command
       ->add_option(
           "--crs", arguments->crs,

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
 #include "fovea/drive/command_files.h"
 #include "fovea/errors.h"
@@ -27,19 +25,16 @@ namespace fovea {
 namespace {
 
 constexpr const char* kOrthophoto = "orthophoto";
-constexpr std::array<std::string_view, 9> kPointFormats = {
-    "ply", "pcd", "las", "3dtiles", "mesh", "glb", "colmap", "nerf", kOrthophoto};
 
 std::string format_of(const std::filesystem::path& output, const ExportOptions& options) {
   std::string format = options.format;
   if (format.empty() && output.has_extension()) format = output.extension().string().substr(1);
   if (options.format.empty() && format == "png") format = kOrthophoto;
-  const bool has_points =
-      std::find(kPointFormats.begin(), kPointFormats.end(), format) != kPointFormats.end();
-  if (has_points || is_frame_format(format)) return format;
+  if (std::find(kExportFormats.begin(), kExportFormats.end(), format) != kExportFormats.end()) {
+    return format;
+  }
   throw ConfigError(fmt::format("there is no export format '{}'", format), output.string(),
-                    "give ExportOptions::format: ply, pcd, las, 3dtiles, mesh, glb, orthophoto, "
-                    "colmap, nerf, tum, csv, geojson, frames or kitti-poses");
+                    "give ExportOptions::format: " + export_format_names());
 }
 
 PointChoice point_choice(const MapReader& map, const ExportOptions& options) {

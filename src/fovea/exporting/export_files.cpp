@@ -1,10 +1,20 @@
 #include "fovea/exporting/export_files.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <map>
+#include <span>
 
 #include "fovea/exporting/orthophoto/orthophoto_writer.h"
 
 namespace fovea {
+
+std::string export_format_names() {
+  const std::span formats(kExportFormats);
+  return fmt::format("{} or {}", fmt::join(formats.first(formats.size() - 1), ", "),
+                     formats.back());
+}
 
 CommandFiles export_files(const ExportPaths& paths, const std::string& format, bool force) {
   CommandFiles files;

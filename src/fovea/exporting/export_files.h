@@ -1,12 +1,21 @@
 // The files that an export of a map reads and writes.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "fovea/drive/command_files.h"
 
 namespace fovea {
+
+inline constexpr std::array<std::string_view, 14> kExportFormats = {
+    "ply",    "pcd",  "las", "3dtiles", "mesh",    "glb",    "orthophoto",
+    "colmap", "nerf", "tum", "csv",     "geojson", "frames", "kitti-poses"};
+
+/// For messages: "ply, pcd, ..., frames or kitti-poses".
+std::string export_format_names();
 
 struct ExportPaths {
   std::filesystem::path map, output;

@@ -15,7 +15,7 @@ namespace fovea {
 class TopView {
  public:
   static constexpr float kThickness = 0.1f;  ///< m
-  /// Pixels without points are filled in gaps of at most so many pixels.
+  /// Gaps of at most this many pixels are filled.
   static constexpr int kWidestGap = 2;
 
   TopView(int width, int height);
